@@ -1,0 +1,46 @@
+# Everything a fresh machine needs is Python >= 3.11 and make. `make run` and `make test` set up the rest.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.installed
+
+.PHONY: help run test test-all lint types format reference clean
+
+help:
+	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
+	@echo "make test      the tests (a few minutes; the first call also sets up .venv)"
+	@echo "make test-all  the tests with the slow studies"
+	@echo "make lint      ruff, make types: mypy, make format: ruff format"
+	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
+
+$(READY): pyproject.toml requirements.lock
+	$(PYTHON) -c 'import sys; sys.exit("slosh needs Python 3.11 or newer; call make PYTHON=python3.11") if sys.version_info < (3, 11) else None'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[dev]'
+	touch $(READY)
+
+run: $(READY)
+	$(BIN)/slosh run scenarios/paper_80.yaml
+
+test: $(READY)
+	$(BIN)/python -m pytest -m "not slow"
+
+test-all: $(READY)
+	$(BIN)/python -m pytest
+
+lint: $(READY)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types: $(READY)
+	$(BIN)/mypy
+
+format: $(READY)
+	$(BIN)/ruff format
+	$(BIN)/ruff check --fix
+
+reference: $(READY)
+	$(BIN)/python -m tests.reference_code
+
+clean:
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -1,0 +1,65 @@
+"""`slosh init`: a commented scenario to start from."""
+
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import say
+from slosh_cli.errors import UsageError
+
+DEFAULT: Final = "paper-80-liquid"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the tree."""
+    app.command("init")(init)
+
+
+def init(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")
+    ] = DEFAULT,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="File to write. Default: its own name, in the current folder.",
+            show_default=False,
+        ),
+    ] = None,
+    names: Annotated[bool, typer.Option("--list", help="List the packaged scenarios and leave.")] = False,
+) -> ExitCode:
+    """Write a commented scenario to start from. Never overwrites a file."""
+    from slosh_cli.scenario import (  # noqa: PLC0415  (--help does without)
+        Scenario,
+        find_packaged,
+        load_any_scenario,
+        packaged_scenarios,
+    )
+
+    if names:
+        say("\n".join(packaged_scenarios()))
+        return ExitCode.DONE
+    source = find_packaged(name)
+    file = output or Path(source.name)
+    _write_new(file, source.read_text(encoding="utf-8"))
+    then = f", run it with `slosh run {file}`" if isinstance(load_any_scenario(source), Scenario) else ""
+    say(f"{file} written. Change it, check it with `slosh check {file}`{then}.")
+    others = [other for other, path in packaged_scenarios().items() if path != source]
+    if others:
+        say(f"Others to start from: {', '.join(others)}.")
+    return ExitCode.DONE
+
+
+def _write_new(file: Path, text: str) -> None:
+    try:
+        with file.open("x", encoding="utf-8", newline="\n") as new:
+            new.write(text)
+    except FileExistsError as error:
+        raise UsageError(f"{file} exists already; choose another name with -o FILE", str(file)) from error
+    except OSError as error:
+        raise UsageError(f"cannot write {file}: {error.strerror or error}", str(file)) from error

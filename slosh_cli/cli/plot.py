@@ -1,0 +1,43 @@
+"""`slosh plot`: the figures of a run, from its history file."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import say
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the tree."""
+    app.command("plot")(plot)
+
+
+def plot(
+    history_file: Annotated[
+        Path, typer.Argument(metavar="FILE.h5", help="History file of a run.", show_default=False)
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="DIR", help="Folder for the figures. Default: that of FILE.h5.",
+            show_default=False,
+        ),
+    ] = None,
+) -> ExitCode:  # fmt: skip
+    """Draw the figures of a run from its history file.
+
+    Each is written as PNG and as SVG.
+    """
+    from slosh_cli.report.figures import draw_run  # noqa: PLC0415  (imports matplotlib)
+    from slosh_cli.results.files import staging  # noqa: PLC0415
+    from slosh_cli.results.hdf5 import read_history  # noqa: PLC0415  (imports h5py)
+
+    history = read_history(history_file)
+    folder = output or history_file.parent
+    with staging(folder) as stage:
+        drawn = draw_run(history, stage)
+    for file in drawn:
+        say(str(folder / file.name))
+    return ExitCode.DONE

@@ -1,0 +1,44 @@
+"""Reading the scenario a command was given."""
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from slosh_cli.errors import Problem, ScenarioError
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario, TankScenario
+
+
+def read_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario":
+    """Load the scenario of a stop.
+
+    Raises ScenarioError, which for a missing file names the packaged scenario that may have been meant.
+    """
+    from slosh_cli.scenario import load_scenario  # noqa: PLC0415  (--help does without)
+
+    _check_exists(path)
+    return load_scenario(path, overrides or ())
+
+
+def read_any_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario | TankScenario":
+    """Load the scenario of a stop, or of a tank alone. Raises ScenarioError as `read_scenario` does."""
+    from slosh_cli.scenario import load_any_scenario  # noqa: PLC0415  (--help does without)
+
+    _check_exists(path)
+    return load_any_scenario(path, overrides or ())
+
+
+def _check_exists(path: Path) -> None:
+    """Name the packaged scenario that may have been meant by a file that does not exist."""
+    from slosh_cli.scenario import packaged_scenarios  # noqa: PLC0415  (--help does without)
+
+    if path.exists():
+        return
+    files = {known: file for name, file in packaged_scenarios().items() for known in (name, file.stem, file.name)}
+    for meant in get_close_matches(path.name, files, n=1, cutoff=0.7):
+        name, file = files[meant].stem, files[meant].name
+        fix = f"`slosh init {name}` writes the packaged one to {file}, then `slosh run {file}`"
+        rule = "must be the path of a scenario file"
+        raise ScenarioError(str(path), [Problem(None, "", rule, "no such file", fix)])

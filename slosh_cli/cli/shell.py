@@ -1,0 +1,94 @@
+"""The error shell around the commands: exceptions in, messages and exit codes out."""
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from contextlib import suppress
+from io import TextIOWrapper
+from typing import Final
+
+import typer
+
+from slosh_cli.cli.app import app
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import close_stdout, complain, say_json
+from slosh_cli.errors import ScenarioError, SloshError
+
+DEBUG: Final = "SLOSH_DEBUG"
+"""Environment variable: when set, an unexpected error shows its traceback."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line with `arguments` (default: those of the process); returns the exit code."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    before_dashes = words[: words.index("--")] if "--" in words else words
+    _forgive_encodings()
+    try:
+        return _run(words)
+    except Exception as error:  # the last resort: no traceback may reach the user
+        return _report(error, as_json="--json" in before_dashes)
+    except KeyboardInterrupt:
+        return _interrupted(as_json="--json" in before_dashes)
+
+
+def _run(words: list[str]) -> int:
+    """Run one command; a broken pipe on the way is the reader's choice and no error."""
+    try:
+        code = typer.main.get_command(app).main(args=words, prog_name="slosh", standalone_mode=False)
+        sys.stdout.flush()
+    except (SystemExit, BrokenPipeError) as end:
+        if isinstance(end, BrokenPipeError) or isinstance(end.__context__, OSError):
+            close_stdout()
+            return ExitCode.DONE
+        return end.code if isinstance(end.code, int) else ExitCode.DONE
+    if code == ExitCode.INTERRUPTED:
+        raise KeyboardInterrupt
+    return int(code or ExitCode.DONE)
+
+
+def _report(error: Exception, *, as_json: bool) -> ExitCode:
+    """Tell the user of an error, once; returns the exit code that goes with it."""
+    if isinstance(error, typer.Abort):
+        return _interrupted(as_json=as_json)
+    if isinstance(error, SloshError):
+        text = str(error) if isinstance(error, ScenarioError) else f"error: {error}"
+        _say_error(text, as_json, code=error.code, message=str(error), where=error.where)
+        return ExitCode.BAD_INPUT
+    # Usage errors of the command-line library word themselves; their class moves between its versions.
+    wording = getattr(error, "format_message", None)
+    if wording is not None:
+        context = getattr(error, "ctx", None)
+        command = context.command_path if context else "slosh"
+        text = f"error: {wording()}\nSee `{command} --help`."
+        _say_error(text, as_json, code="usage", message=wording(), where=command)
+        return ExitCode.BAD_INPUT
+    if os.environ.get(DEBUG):
+        traceback.print_exception(error)
+    message = f"{type(error).__name__}: {error}"
+    text = (
+        f"slosh failed on its own account: {message}\n"
+        f"Please report this with the command and the scenario; {DEBUG}=1 makes slosh show where it happened."
+    )
+    _say_error(text, as_json, code="internal", message=message, where="")
+    return ExitCode.NO_ANSWER
+
+
+def _interrupted(*, as_json: bool) -> ExitCode:
+    _say_error("interrupted", as_json, code="interrupted", message="interrupted", where="")
+    return ExitCode.INTERRUPTED
+
+
+def _say_error(text: str, as_json: bool, **error: str) -> None:
+    """An error for people on stderr and, when asked for, for scripts on stdout."""
+    if as_json:
+        say_json({"error": error})
+    complain(text)
+
+
+def _forgive_encodings() -> None:
+    """A terminal that lacks a character shows a stand-in for it; that is no reason to fail."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            with suppress(ValueError):
+                stream.reconfigure(errors="replace")

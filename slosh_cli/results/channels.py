@@ -1,0 +1,113 @@
+"""The channels of a run's history: name, unit and meaning of each.
+
+Forces, energies and masses are those of the whole wagon; wheel forces are those of one wheel on one rail.
+Heaves are positive up and measured from the unloaded geometry, pitch angles are positive nose-down.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+WHEELS = (1, 2, 3, 4)
+"""Wheel numbers: 1 leads the front bogie, 4 trails the rear bogie."""
+BOGIES = (1, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One quantity recorded over time: `name` in files and code, SI `unit`, `long_name` for people."""
+
+    name: str
+    unit: str
+    long_name: str
+
+
+def wheel(i: int, quantity: str) -> str:
+    """Name of the channel that holds `quantity` (say "normal_force") of wheel `i`, 1 to 4."""
+    return f"wheel_{i}_{quantity}"
+
+
+def slosh_amplitude(n: int) -> str:
+    """Name of the amplitude channel of the `n`-th longitudinal slosh mode, counted from 1."""
+    return f"slosh_{n}_amplitude"
+
+
+_WAGON = (
+    Channel("position", "m", "distance travelled by the wheels since t = 0"),
+    Channel("speed", "m/s", "train speed (wheels)"),
+    Channel("acceleration", "m/s^2", "longitudinal acceleration of the wheels (carries bogie-pitch ringing)"),
+    Channel("car_acceleration", "m/s^2", "longitudinal acceleration of the car body's centre"),
+    Channel("car_heave", "m", "vertical displacement of the car body, positive up"),
+    Channel("car_pitch", "rad", "pitch angle of the car body, positive nose-down"),
+)
+
+_BOGIE = (
+    ("heave", "m", "vertical displacement of bogie {i}, positive up"),
+    ("pitch", "rad", "pitch angle of bogie {i}, positive nose-down"),
+)
+
+_WHEEL = (
+    ("heave", "m", "vertical displacement of wheel {i}, positive up"),
+    ("speed", "m/s", "circumferential speed of wheel {i}"),
+    ("creepage", "1", "longitudinal creepage of wheel {i}, (V - R phi') / V"),
+    ("normal_force", "N", "normal contact force of wheel {i}"),
+    ("tangential_force", "N", "tangential contact force of wheel {i}, positive when it brakes"),
+    ("brake_torque", "N m", "brake torque transmitted to wheel {i}"),
+    ("rail_deflection", "m", "rail displacement under wheel {i}, positive up"),
+)
+
+_LIQUID = (
+    Channel("liquid_force", "N", "longitudinal force of the liquid on the tank, positive forward"),
+    Channel("liquid_moment", "N m", "moment of the liquid about the tank's bottom centre, nose-down"),
+    Channel("surface_front", "m", "free-surface rise at the front end wall"),
+    Channel("surface_rear", "m", "free-surface rise at the rear end wall"),
+)
+
+_ENERGY = (
+    Channel("energy_kinetic", "J", "kinetic energy of wagon, load and rail"),
+    Channel("energy_elastic", "J", "elastic energy of suspensions, contacts, rail and foundation"),
+    Channel("energy_slosh", "J", "potential energy of the liquid's motion and of gravity"),
+    Channel("energy_brake", "J", "energy taken by the brakes so far"),
+    Channel("energy_creep", "J", "energy taken by creep in the contacts so far"),
+    Channel("energy_suspension", "J", "energy taken by the suspension dampers so far"),
+    Channel("energy_foundation", "J", "energy taken by the track foundation so far"),
+    Channel("energy_resistance", "J", "energy taken by the running resistance so far"),
+    Channel("energy_slosh_damping", "J", "energy taken by slosh damping so far"),
+    Channel("energy_slope_work", "J", "work done by the wheels' own dip in the rail so far"),
+    Channel("energy_residual", "1", "what the energy ledger misses, relative to the initial kinetic energy"),
+)
+
+
+def _fixed_channels() -> tuple[Channel, ...]:
+    bogies = (
+        Channel(f"bogie_{i}_{quantity}", unit, meaning.format(i=i))
+        for i in BOGIES
+        for quantity, unit, meaning in _BOGIE
+    )
+    wheels = (
+        Channel(wheel(i, quantity), unit, meaning.format(i=i))
+        for i in WHEELS
+        for quantity, unit, meaning in _WHEEL
+    )
+    return (*_WAGON, *bogies, *wheels, *_LIQUID, *_ENERGY)
+
+
+TIME = Channel("time", "s", "time since the start of the run")
+CHANNELS: Mapping[str, Channel] = MappingProxyType({channel.name: channel for channel in _fixed_channels()})
+"""Every channel that each run has, in file order; slosh amplitudes come on top, one per mode."""
+
+_SLOSH_AMPLITUDE = re.compile(r"slosh_([1-9][0-9]*)_amplitude")
+
+
+def channel(name: str) -> Channel:
+    """Unit and meaning of the channel called `name`.
+
+    Raises KeyError when no channel has that name.
+    """
+    if name in CHANNELS:
+        return CHANNELS[name]
+    match = _SLOSH_AMPLITUDE.fullmatch(name)
+    if match:
+        return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")
+    raise KeyError(f"There is no channel named {name!r}.")

@@ -1,0 +1,78 @@
+"""Scenarios: what is simulated, read from YAML with units and checked as a whole."""
+
+from slosh_cli.scenario.loader import (
+    load_any_scenario,
+    load_scenario,
+    load_tank_scenario,
+    parse_scenario,
+    replace,
+    scenario_to_yaml,
+)
+from slosh_cli.scenario.packaged import find_packaged, packaged_scenarios
+from slosh_cli.scenario.schema import Scenario, TankScenario, json_schema
+from slosh_cli.scenario.schema_run import (
+    Adhesion,
+    Braking,
+    Contact,
+    Domain,
+    Foundation,
+    Output,
+    Rail,
+    Solver,
+    Track,
+)
+from slosh_cli.scenario.schema_tank import (
+    Coefficient,
+    Elliptical,
+    HorizontalCylinder,
+    Liquid,
+    Polygon,
+    Rectangular,
+    Tank,
+)
+from slosh_cli.scenario.schema_wagon import (
+    Bogie,
+    CarBody,
+    RunningResistance,
+    Suspension,
+    Wagon,
+    Wheelset,
+)
+from slosh_cli.scenario.units import parse_quantity
+
+__all__ = [
+    "Adhesion",
+    "Bogie",
+    "Braking",
+    "CarBody",
+    "Coefficient",
+    "Contact",
+    "Domain",
+    "Elliptical",
+    "Foundation",
+    "HorizontalCylinder",
+    "Liquid",
+    "Output",
+    "Polygon",
+    "Rail",
+    "Rectangular",
+    "RunningResistance",
+    "Scenario",
+    "Solver",
+    "Suspension",
+    "Tank",
+    "TankScenario",
+    "Track",
+    "Wagon",
+    "Wheelset",
+    "find_packaged",
+    "json_schema",
+    "load_any_scenario",
+    "load_scenario",
+    "load_tank_scenario",
+    "packaged_scenarios",
+    "parse_quantity",
+    "parse_scenario",
+    "replace",
+    "scenario_to_yaml",
+]

@@ -1,0 +1,280 @@
+"""From plain data to a model, or to the complete list of what is wrong with the data."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
+
+from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.leaves import (
+    FROM_TEXT,
+    Choice,
+    Count,
+    Leaf,
+    Number,
+    Quantity,
+    Text,
+    Version,
+    guess,
+    not_an_option,
+    one_of,
+)
+from slosh_cli.scenario.polygon import EXAMPLE
+from slosh_cli.scenario.rules import Finding, Values, broken_rules, values_of
+from slosh_cli.scenario.schema import Root
+from slosh_cli.scenario.schema_run import Adhesion
+from slosh_cli.scenario.schema_tank import SHAPES, Coefficient, Coefficients, TankBase
+from slosh_cli.scenario.units import plain
+
+R = TypeVar("R", bound=Root)
+Path = tuple[str | int, ...]
+
+
+def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[Finding, ...]]:
+    """The validated model, or None and every finding. Quantities in `data` are texts with a unit."""
+    try:
+        return model.model_validate(data, context=FROM_TEXT), ()
+    except ValidationError as error:
+        findings = [finding for entry in error.errors() for finding in _translate(model, data, entry)]
+    guessed = _with_guessed_shape(data)
+    if guessed is not None:
+        findings += diagnose(model, guessed)[1]
+    findings += broken_rules(_valid_values(model, data), model.rules)
+    return None, tuple(dict.fromkeys(_without_echoes(findings)))
+
+
+def _with_guessed_shape(data: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The data with the shape of tank that was probably meant, so that the other keys can be judged."""
+    tank = data.get("tank")
+    if not isinstance(tank, dict) or (isinstance(tank.get("shape"), str) and tank["shape"] in SHAPES):
+        return None
+    shape = guess(tank.get("shape", ""), tuple(SHAPES)).strip("`")
+    if not shape:
+        telling = {"radius": "horizontal-cylinder", "points": "polygon"}
+        shape = next((telling[key] for key in telling if key in tank), "")
+    return {**data, "tank": {**tank, "shape": shape}} if shape else None
+
+
+def dotted(path: Path) -> str:
+    """The key path as people write it, ``tank.coefficients.0.mu``."""
+    return ".".join(str(step) for step in path)
+
+
+def _without_echoes(findings: list[Finding]) -> list[Finding]:
+    """Leave out a missing key where an unknown one beside it was guessed to be that key."""
+    guessed = {finding.guess for finding in findings if finding.guess}
+    return [finding for finding in findings if finding.given != "nothing" or finding.path not in guessed]
+
+
+def _translate(model: type[Root], data: Mapping[str, Any], entry: Any) -> Iterator[Finding]:
+    """One error of pydantic in the words of this program."""
+    path, kind, context = _data_path(entry["loc"]), entry["type"], entry.get("ctx", {})
+    if kind == "rules":
+        yield from context["findings"]
+    elif kind == "refused":
+        yield Finding(path, context["rule"], context["given"], context["fix"])
+    elif kind == "missing":
+        parent = part_at(model, data, path[:-1])
+        yield Finding(path, "is required", "nothing", _how_to_write(str(path[-1]), parent))
+    elif kind == "extra_forbidden":
+        yield _unknown_key(model, data, path)
+    elif kind in ("union_tag_invalid", "union_tag_not_found") or path == ("tank",):
+        yield _wrong_shape_of_tank(path, entry["input"])
+    else:
+        yield _not_a_mapping(path, entry["input"], part_at(model, data, path))
+
+
+def _data_path(location: tuple[str | int, ...]) -> Path:
+    """Pydantic's location without the names of union branches, which are no keys of the file."""
+    path = list(location)
+    if len(path) > 1 and path[0] == "tank":
+        del path[1]
+    if len(path) > 2 and path[:2] == ["tank", "coefficients"] and path[2] in ("given", "computed"):
+        del path[2]
+    return tuple(path)
+
+
+def _wrong_shape_of_tank(path: Path, given: Any) -> Finding:
+    if not isinstance(given, dict):
+        fix = "write `shape: horizontal-cylinder` and the tank's other keys under it, each on its own line"
+        return Finding(path, "must be a mapping", plain(given), fix)
+    if "shape" not in given:
+        listed = one_of([f"shape: {shape}" for shape in SHAPES])
+        return Finding((*path, "shape"), "is required", "nothing", f"write {listed}")
+    refused = not_an_option(given["shape"], tuple(SHAPES))
+    return Finding((*path, "shape"), refused.rule, refused.given, refused.fix)
+
+
+def _not_a_mapping(path: Path, given: Any, part: type[BaseModel] | None) -> Finding:
+    if part is None:
+        return Finding(path, "must have another form", plain(given), "see `slosh schema` for the form")
+    keys = _listed(part.model_fields)
+    return Finding(
+        path, f"must be a mapping with the keys {keys}", plain(given), f"write these keys under `{path[-1]}:`"
+    )
+
+
+def _listed(names: Any) -> str:
+    names = list(names)
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _unknown_key(model: type[Root], data: Mapping[str, Any], path: Path) -> Finding:
+    """A key that is not in the schema, with a guess: another place for it, a similar key, another shape."""
+    part, name = part_at(model, data, path[:-1]), str(path[-1])
+    fields = list(part.model_fields) if part else []
+    rule = f"is not a key of `{dotted(path[:-1])}`" if len(path) > 1 else "is not a key of a scenario"
+    owners = [shape for shape, tank in SHAPES.items() if name in tank.model_fields]
+    given, fix = f"`{name}`", f"take it out; the keys here are {_listed(fields)}"
+    if part is not None and part in SHAPES.values():
+        rule = f"is not a key of a tank of shape {_shape_of(part)}"
+        given += f", which belongs to shape {' or '.join(owners)}" if owners else ""
+    parent = _value_at(data, path[:-1])
+    absent = {field.lower(): field for field in fields if not isinstance(parent, dict) or field not in parent}
+    near = _similar(name, absent)
+    places = sorted(_places_of(model, name), key=lambda place: place[: len(path) - 1] != path[:-1])
+    elsewhere = [place for place in places if _value_at(data, place) is None]
+    if elsewhere:
+        return Finding(path, rule, given, f"move it to `{dotted(elsewhere[0])}`", elsewhere[0])
+    if near:
+        return Finding(path, rule, given, f"write `{absent[near[0]]}`", (*path[:-1], absent[near[0]]))
+    taken = _similar(name, fields)
+    if taken:
+        fix = f"write `{taken[0]}`, which is there already, or take it out"
+    elif places:
+        fix = f"take it out, or did you mean `{dotted(places[0])}`?"
+    return Finding(path, rule, given, fix)
+
+
+def _similar(name: str, keys: Iterable[str]) -> list[str]:
+    """At most one of `keys`; short names may differ in half of their letters."""
+    return difflib.get_close_matches(name.lower().replace("-", "_"), keys, 1, 0.5 if len(name) < 4 else 0.6)
+
+
+def _shape_of(part: type[BaseModel]) -> str:
+    return next(shape for shape, tank in SHAPES.items() if tank is part)
+
+
+def _value_at(data: Any, path: Path) -> Any:
+    for step in path:
+        try:
+            data = data[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data
+
+
+def part_of(field: FieldInfo, value: Any = None) -> type[Part] | None:
+    """The class of a field that holds a mapping; for the tank it depends on the shape in `value`."""
+    annotation = field.annotation
+    if isinstance(annotation, type) and issubclass(annotation, Part):
+        return annotation
+    if field.discriminator == "shape":
+        shape = value.get("shape") if isinstance(value, dict) else None
+        return SHAPES.get(shape) if isinstance(shape, str) else None
+    return None
+
+
+def part_at(model: type[Part], data: Any, path: Path) -> type[Part] | None:
+    """The class of the mapping at `path`, None where the schema has no mapping there."""
+    part: type[Part] | None = model
+    for step in path:
+        data = _value_at(data, (step,))
+        if isinstance(step, int):
+            part = Coefficient
+            continue
+        if part is None or step not in part.model_fields:
+            return None
+        field = part.model_fields[step]
+        part = part_of(field, data)
+        if part is None and step == "coefficients":
+            part = Coefficient
+    return part
+
+
+def _places_of(model: type[Part], name: str, prefix: Path = ()) -> Iterator[Path]:
+    """Paths at which the schema knows `name`, single values only, dimensions of the tank left out."""
+    for key, field in model.model_fields.items():
+        part = part_of(field) or (TankBase if key == "tank" else None)
+        if part is not None:
+            yield from _places_of(part, name, (*prefix, key))
+        elif key == name and prefix:
+            yield (*prefix, key)
+
+
+def leaf_of(field: FieldInfo) -> Leaf | None:
+    """The leaf in a field's annotation, None for mappings and lists of mappings."""
+    return next((entry for entry in field.metadata if isinstance(entry, Leaf)), None)
+
+
+def _how_to_write(name: str, parent: type[BaseModel] | None) -> str:
+    if parent is None or name not in parent.model_fields:
+        return f"write `{name}: ...`"
+    field = parent.model_fields[name]
+    leaf, part = leaf_of(field), part_of(field)
+    if leaf is not None:
+        return f"write `{name}: {_example(leaf)}`"
+    if name == "adhesion":
+        return "write `adhesion: dry` or `adhesion: wet`"
+    keys = _listed(part.model_fields) if part else "shape, its dimensions, length, fill, bottom_height and liquid"
+    return f"write `{name}:` with the keys {keys} under it"
+
+
+def _example(leaf: Leaf) -> str:
+    match leaf:
+        case Quantity() | Number():
+            return leaf.example
+        case Choice():
+            return leaf.options[-1]
+        case Count():
+            return str(leaf.low)
+        case Version():
+            return str(leaf.supported)
+        case Text():
+            return "stop-1"
+        case _:
+            return EXAMPLE
+
+
+def _valid_values(model: type[Part], data: Any, prefix: str = "") -> Values:
+    """What is valid in data that as a whole is not; keys with an invalid value are left out."""
+    values: dict[str, Any] = {}
+    explicit: set[str] = set()
+    for name, field in model.model_fields.items():
+        key = prefix + name
+        if name in data:
+            explicit.add(key)
+            found = _valid_value(field, data[name], key)
+        elif field.is_required():
+            continue
+        else:
+            default = field.get_default()
+            found = values_of(default, f"{key}.") if isinstance(default, Part) else Values({key: default}, frozenset())
+        values.update(found.values)
+        explicit |= found.explicit
+    return Values(values, frozenset(explicit))
+
+
+def _valid_value(field: FieldInfo, value: Any, key: str) -> Values:
+    nothing: frozenset[str] = frozenset()
+    leaf, part = leaf_of(field), part_of(field, value)
+    try:
+        if leaf is not None:
+            return Values({key: leaf.parse(value)}, nothing)
+        if key.endswith(".coefficients"):
+            return Values({key: _COEFFICIENTS.validate_python(value, context=FROM_TEXT)}, nothing)
+    except (ValueRefused, ValidationError):
+        return Values({}, nothing)
+    if key.endswith(".shape"):
+        return Values({key: value}, nothing)
+    if isinstance(value, Adhesion) or part is None or not isinstance(value, dict):
+        return Values({}, nothing)
+    return _valid_values(part, value, f"{key}.")
+
+
+_COEFFICIENTS: TypeAdapter[Any] = TypeAdapter(Coefficients)

@@ -1,0 +1,294 @@
+"""The kinds of single value a scenario holds: quantity, number, count, choice, text, coordinates.
+
+A leaf stands in the annotation of a model field (``Annotated[float, Quantity(...)]``). It checks the value,
+words the refusal, and describes itself in the JSON schema. Values read from a file or a command line are
+validated with the context FROM_TEXT, where a quantity has to carry its unit; models built in Python take
+plain SI floats.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
+
+from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.units import DIMENSIONS, NUMBER_PATTERN, convert, parse_quantity, plain, shown
+
+FROM_TEXT: Final[dict[str, bool]] = {"units_required": True}
+
+
+class SIValue(float):
+    """A float already in SI, accepted where a file would have to give a unit."""
+
+
+def refused_error(refused: ValueRefused) -> PydanticCustomError:
+    """A refusal in the form pydantic collects."""
+    context = {"rule": refused.rule, "given": refused.given, "fix": refused.fix}
+    return PydanticCustomError("refused", "{rule}; given {given}; {fix}", context)
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """Base of the leaves."""
+
+    def parse(self, value: object) -> Any:
+        """The checked value of something read from a file; ValueRefused where a rule is broken."""
+        raise NotImplementedError
+
+    def parse_python(self, value: object) -> Any:
+        """The checked value of something given in Python."""
+        return self.parse(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """What a JSON schema says about the value as a file holds it."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        def validate(value: Any, info: core_schema.ValidationInfo) -> Any:
+            try:
+                return self.parse(value) if _from_text(info.context) else self.parse_python(value)
+            except ValueRefused as refused:
+                raise refused_error(refused) from None
+
+        return core_schema.with_info_plain_validator_function(validate)
+
+    def __get_pydantic_json_schema__(
+        self, _core: core_schema.CoreSchema, _handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return self.json_schema()
+
+
+def _from_text(context: Any) -> bool:
+    return bool(context and context.get("units_required"))
+
+
+@dataclass(frozen=True)
+class Range:
+    """The values allowed; an exclusive end is one that the value may approach but not take."""
+
+    low: float
+    high: float
+    above: bool = False
+    below: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        return (self.low < value if self.above else self.low <= value) and (
+            value < self.high if self.below else value <= self.high
+        )
+
+    def words(self, unit: str = "") -> str:
+        """``from 100 kg to 2e4 kg``, in the given unit."""
+        tail = f" {unit}" if unit else ""
+        start = f"above {shown(self.low)}{tail}" if self.above else f"from {shown(self.low)}{tail}"
+        end = f"below {shown(self.high)}{tail}" if self.below else f"to {shown(self.high)}{tail}"
+        return f"{start} {'and' if self.above or self.below else ''} {end}".replace("  ", " ")
+
+
+@dataclass(frozen=True)
+class Quantity(Leaf):
+    """A number with a unit, held as an SI float within `limits` (SI). `example` is what to write."""
+
+    dimension: str
+    limits: Range
+    example: str
+    nonzero: bool = False
+
+    @property
+    def unit(self) -> str:
+        """The SI unit the value is held in."""
+        return DIMENSIONS[self.dimension].unit
+
+    def parse(self, value: object) -> float:
+        if isinstance(value, SIValue):
+            number = float(value)
+        else:
+            number = parse_quantity(value, self.dimension, self.limits.__contains__)
+        if number == 0.0 and self.nonzero:
+            raise ValueRefused("must not be zero", plain(value), f"write a value such as `{self.example}`")
+        if number in self.limits:
+            return number
+        noun = DIMENSIONS[self.dimension].noun
+        given = plain(value) if isinstance(value, str) else f"`{shown(number)} {self.unit}`"
+        if isinstance(value, str) and f"{shown(number)} {self.unit}" != value.strip():
+            given += f" = {shown(number)} {self.unit}"
+        raise ValueRefused(f"must be {noun} {self.limits.words(self.unit)}", given, self._range_fix(value))
+
+    def parse_python(self, value: object) -> float:
+        bare = isinstance(value, int | float) and not isinstance(value, bool)
+        return self.parse(SIValue(value) if bare else value)  # type: ignore[arg-type]
+
+    def _range_fix(self, value: object) -> str:
+        """If the same number fits in another unit, that is what was probably meant."""
+        number = re.match(NUMBER_PATTERN, value.strip()) if isinstance(value, str) else None
+        if number:
+            for unit in DIMENSIONS[self.dimension].units:
+                if convert(float(number.group()), unit, self.dimension) in self.limits:
+                    return f"write `{number.group()} {unit}` if that is meant, or a value within the range"
+        return f"write a value within the range, such as `{self.example}`"
+
+    def json_schema(self) -> dict[str, Any]:
+        kind = DIMENSIONS[self.dimension]
+        return {
+            "type": "string",
+            "pattern": rf"^\s*{NUMBER_PATTERN}\s*[A-Za-z(1].*$",
+            "examples": [self.example],
+            "x-unit": kind.unit,
+            "x-range": self.limits.words(kind.unit),
+        }
+
+
+def _finite_number(value: object, rule: str, example: str) -> float:
+    """A plain number as float; ValueRefused for text, truth values, containers, nan and infinity."""
+    if isinstance(value, str) and re.fullmatch(NUMBER_PATTERN, value.strip()):
+        raise ValueRefused(rule, f"the text `'{value}'`", f"write it without quotes: `{value.strip()}`")
+    if isinstance(value, str) and re.match(NUMBER_PATTERN, value.strip()):
+        raise ValueRefused(rule, plain(value), f"write the number alone, it has no unit: `{example}`")
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueRefused(rule, plain(value), f"write a number, such as `{example}`")
+    if not math.isfinite(value):
+        raise ValueRefused(rule, plain(value), f"write a finite number, such as `{example}`")
+    return float(value)
+
+
+@dataclass(frozen=True)
+class Number(Leaf):
+    """A dimensionless number within `limits`."""
+
+    limits: Range
+    example: str
+
+    def parse(self, value: object) -> float:
+        rule = f"must be a number {self.limits.words()}"
+        number = _finite_number(value, rule, self.example)
+        if number not in self.limits:
+            fix = f"write a number within the range, such as `{self.example}`"
+            raise ValueRefused(rule, f"`{shown(number)}`", fix)
+        return number
+
+    def json_schema(self) -> dict[str, Any]:
+        low = "exclusiveMinimum" if self.limits.above else "minimum"
+        high = "exclusiveMaximum" if self.limits.below else "maximum"
+        return {"type": "number", low: self.limits.low, high: self.limits.high}
+
+
+@dataclass(frozen=True)
+class Count(Leaf):
+    """A whole number from `low` to `high`."""
+
+    low: int
+    high: int
+
+    def parse(self, value: object) -> int:
+        rule = f"must be a whole number from {self.low} to {self.high}"
+        number = _finite_number(value, rule, str(self.low))
+        if number != round(number) or not self.low <= number <= self.high:
+            raise ValueRefused(rule, plain(value), f"write a whole number within the range, such as `{self.low}`")
+        return round(number)
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
+
+
+@dataclass(frozen=True)
+class Version(Leaf):
+    """The version of the scenario format."""
+
+    supported: int
+
+    def parse(self, value: object) -> int:
+        if isinstance(value, bool) or not isinstance(value, int | float) or value != self.supported:
+            rule = f"must be {self.supported}, the only scenario format this version reads"
+            raise ValueRefused(rule, plain(value), f"write `{self.supported}`")
+        return self.supported
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"const": self.supported}
+
+
+@dataclass(frozen=True)
+class Choice(Leaf):
+    """One of a few words. `later` are words that the format knows and this version cannot do yet."""
+
+    options: tuple[str, ...]
+    later: tuple[str, ...] = ()
+
+    def parse(self, value: object) -> str:
+        if isinstance(value, str) and value in self.options:
+            return value
+        raise not_an_option(value, self.options, self.later)
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"enum": list(self.options)}
+
+
+def not_an_option(value: object, options: Sequence[str], later: Sequence[str] = ()) -> ValueRefused:
+    """The refusal of a word that is none of `options`, with a guess at the intended one."""
+    listed = one_of(options)
+    rule = f"must be {listed}"
+    if isinstance(value, str) and value in later:
+        return ValueRefused(rule, f"`{value}`, which is not available in this version", f"write {listed}")
+    return ValueRefused(rule, plain(value), f"write {guess(value, options) or listed}")
+
+
+def one_of(options: Sequence[str]) -> str:
+    """``a, b or c``, each in back quotes."""
+    quoted = [f"`{option}`" for option in options]
+    return " or ".join([", ".join(quoted[:-1]), quoted[-1]] if len(quoted) > 1 else quoted)
+
+
+def guess(value: object, options: Sequence[str]) -> str:
+    """The closest option in back quotes, or empty."""
+    if not isinstance(value, str):
+        return ""
+    text = value.lower().replace("_", "-").replace(" ", "-")
+    plain_forms = {option.lower().replace("_", "-"): option for option in options}
+    near = difflib.get_close_matches(text, plain_forms, 1, cutoff=0.6)
+    return f"`{plain_forms[near[0]]}`" if near else ""
+
+
+@dataclass(frozen=True)
+class Text(Leaf):
+    """Text of at most `longest` characters; a `pattern` comes with the `words` that describe it."""
+
+    longest: int
+    pattern: str = ""
+    words: str = ""
+    repair: Callable[[str], str] | None = None
+
+    def parse(self, value: object) -> str:
+        rule = f"must be text of at most {self.longest} characters{self.words}"
+        if not isinstance(value, str):
+            quoted = isinstance(value, int | float)
+            written = str(value).lower() if isinstance(value, bool) else str(value)
+            fix = f'write it in quotes: `"{written}"`' if quoted else "write text"
+            raise ValueRefused(rule, plain(value), fix)
+        if len(value) > self.longest:
+            raise ValueRefused(rule, f"{len(value)} characters", "shorten it")
+        if self.pattern and not re.fullmatch(self.pattern, value):
+            better = self.repair(value) if self.repair else ""
+            raise ValueRefused(rule, plain(value), f"write `{better}`" if better else "write a name such as `stop-1`")
+        return value
+
+    def json_schema(self) -> dict[str, Any]:
+        pattern = {"pattern": f"^{self.pattern}$"} if self.pattern else {}
+        return {"type": "string", "maxLength": self.longest, **pattern}
+
+
+def file_safe(text: str) -> str:
+    """The nearest name that can be a folder: ``my stop/2`` becomes ``my-stop-2``."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("-._")[:100]
+
+
+NAME: Final = Text(
+    longest=100,
+    pattern=r"[A-Za-z0-9][A-Za-z0-9._-]*",
+    words=" that can name a folder: letters, digits, `.`, `-` and `_`, a letter or digit first",
+    repair=file_safe,
+)

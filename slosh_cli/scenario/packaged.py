@@ -1,0 +1,42 @@
+"""The scenarios that come with the program."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from pathlib import Path
+
+from slosh_cli.errors import UsageError
+
+_NAME = re.compile(r"^name:\s*([^\s#]+)", re.MULTILINE)
+
+
+def _folder() -> Path:
+    """Inside the package once installed, beside it in a checkout."""
+    package = Path(__file__).resolve().parent.parent
+    installed = package / "scenarios"
+    return installed if installed.is_dir() else package.parent / "scenarios"
+
+
+def packaged_scenarios() -> dict[str, Path]:
+    """Name (as written in the file) to path of every scenario that comes with the program, sorted by name."""
+    found = {}
+    for path in _folder().glob("*.yaml"):
+        name = _NAME.search(path.read_text(encoding="utf-8"))
+        found[name.group(1) if name else path.stem] = path
+    return dict(sorted(found.items()))
+
+
+def find_packaged(name: str) -> Path:
+    """The path of a packaged scenario by its name or by its file name, with or without ``.yaml``.
+
+    Raises UsageError with the names there are.
+    """
+    known = packaged_scenarios()
+    for key, path in known.items():
+        if name in (key, path.stem, path.name):
+            return path
+    near = difflib.get_close_matches(name, known, 1)
+    listed = ", ".join(known) or "none"
+    hint = f"write `{near[0]}`" if near else f"write one of {listed}"
+    raise UsageError(f"must be the name of a packaged scenario; given `{name}`; {hint}", where=name)

@@ -1,0 +1,223 @@
+"""Rules that tie several values of a scenario together.
+
+A rule is checked as soon as the values it needs are valid, whatever else is wrong, so that a person
+sees everything at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.units import shown
+
+DOMAIN_MARGIN: Final = 5.0
+"""Least length of rail ahead of the first and behind the last wheel, m."""
+HIGHEST_TANK: Final = 7.0
+"""Above every loading gauge in use, m."""
+WIDEST_TANK: Final = 5.0
+"""Wider than every loading gauge in use, m."""
+LONGEST_TANK: Final = 3.0
+"""Of the pivot spacing."""
+MOST_ELEMENTS: Final = 20_000
+MOST_ROWS: Final = 2_000_000
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One mistake at one path of the data: the rule, what was given and what to write.
+
+    Of an unknown key, `guess` is the path of the key that was probably meant.
+    """
+
+    path: tuple[str | int, ...]
+    rule: str
+    given: str
+    fix: str
+    guess: tuple[str | int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Values:
+    """Valid values by dotted key path, defaults included, and the paths that were written out."""
+
+    values: Mapping[str, Any]
+    explicit: frozenset[str]
+
+    def has(self, *keys: str) -> bool:
+        return all(key in self.values for key in keys)
+
+    def __getitem__(self, key: str) -> Any:
+        return self.values[key]
+
+
+def values_of(part: Part, prefix: str = "") -> Values:
+    """All values of a validated part."""
+    values: dict[str, Any] = {}
+    explicit: set[str] = set()
+    for name in type(part).model_fields:
+        value, key = getattr(part, name), prefix + name
+        if name in part.model_fields_set:
+            explicit.add(key)
+        if isinstance(value, Part):
+            inner = values_of(value, f"{key}.")
+            values.update(inner.values)
+            explicit |= inner.explicit
+        else:
+            values[key] = value
+    return Values(values, frozenset(explicit))
+
+
+def _finding(key: str, rule: str, given: str, fix: str) -> Finding:
+    return Finding(tuple(key.split(".")), rule, given, fix)
+
+
+def _metres(value: float) -> str:
+    return f"`{shown(value)} m`"
+
+
+def _wheels_apart(v: Values) -> Iterator[Finding]:
+    if not v.has("wagon.bogie.wheelbase", "wagon.wheelset.wheel_radius"):
+        return
+    wheelbase, diameter = v["wagon.bogie.wheelbase"], 2.0 * v["wagon.wheelset.wheel_radius"]
+    if wheelbase <= diameter:
+        rule = f"must be longer than the wheels are high, {shown(diameter)} m, or the wheels of a bogie touch"
+        yield _finding("wagon.bogie.wheelbase", rule, _metres(wheelbase), "write a longer wheelbase or smaller wheels")
+
+
+def _bogies_apart(v: Values) -> Iterator[Finding]:
+    if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing"):
+        return
+    wheelbase, spacing = v["wagon.bogie.wheelbase"], v["wagon.pivot_spacing"]
+    if spacing <= wheelbase:
+        rule = f"must be longer than the wheelbase of a bogie, {shown(wheelbase)} m"
+        yield _finding("wagon.pivot_spacing", rule, _metres(spacing), "write a longer pivot spacing")
+
+
+def _domain_holds_wagon(v: Values) -> Iterator[Finding]:
+    if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing", "track.domain.length"):
+        return
+    wheels = v["wagon.pivot_spacing"] + v["wagon.bogie.wheelbase"]
+    needed, length = wheels + 2.0 * DOMAIN_MARGIN, v["track.domain.length"]
+    if length < needed:
+        rule = f"must hold the wheels, {shown(wheels)} m apart, and {shown(DOMAIN_MARGIN)} m more at either end"
+        yield _finding("track.domain.length", rule, _metres(length), f"write at least `{shown(needed)} m`")
+
+
+def _elements(v: Values) -> Iterator[Finding]:
+    key = "track.domain.element_length"
+    if v.has(key, "wagon.bogie.wheelbase") and v[key] > 0.5 * v["wagon.bogie.wheelbase"]:
+        most = 0.5 * v["wagon.bogie.wheelbase"]
+        rule = f"must be at most half the wheelbase, {shown(most)} m"
+        yield _finding(key, rule, _metres(v[key]), f"write `{shown(most)} m` or less")
+    if v.has(key, "track.domain.length") and v["track.domain.length"] / v[key] > MOST_ELEMENTS:
+        rule = f"must give at most {MOST_ELEMENTS} elements over {shown(v['track.domain.length'])} m"
+        least = v["track.domain.length"] / MOST_ELEMENTS
+        yield _finding(key, rule, _metres(v[key]), f"write `{shown(least)} m` or more")
+
+
+def _adhesion(v: Values) -> Iterator[Finding]:
+    area, slip = "contact.adhesion.kA", "contact.adhesion.kS"
+    if v.has(area, slip) and v[slip] > v[area]:
+        rule = f"must be at most kA, {shown(v[area])}"
+        yield _finding(slip, rule, f"`{shown(v[slip])}`", f"write `{shown(v[area])}` or less, or exchange kA and kS")
+
+
+def _braking(v: Values) -> Iterator[Finding]:
+    stop, start = "braking.stop_speed", "braking.initial_speed"
+    if v.has(stop, start) and v[stop] >= v[start]:
+        rule = f"must be below the initial speed, {shown(v[start])} m/s"
+        yield _finding(
+            stop,
+            rule,
+            f"`{shown(v[stop])} m/s`",
+            "write a lower stop speed or a higher `braking.initial_speed`",
+        )
+    limit, onset = "solver.time_limit", "braking.onset"
+    if v.has(limit, onset) and v[onset] >= v[limit]:
+        rule = f"must come before the solver's time limit, {shown(v[limit])} s"
+        yield _finding(onset, rule, f"`{shown(v[onset])} s`", "write an earlier onset or a later `solver.time_limit`")
+
+
+def _rows(v: Values) -> Iterator[Finding]:
+    interval, limit = "output.interval", "solver.time_limit"
+    if v.has(interval, limit) and v[limit] / v[interval] > MOST_ROWS:
+        rule = f"must give at most {MOST_ROWS} rows up to the time limit of {shown(v[limit])} s"
+        fix = f"write `{shown(v[limit] / MOST_ROWS)} s` or more, or a lower `solver.time_limit`"
+        yield _finding(interval, rule, f"`{shown(v[interval])} s`", fix)
+
+
+def _coefficients(v: Values) -> Iterator[Finding]:
+    if not isinstance(v.values.get("tank.coefficients"), tuple):
+        return
+    if "tank.modes" in v.explicit:
+        fix = "leave `modes` out, or write `coefficients: computed`"
+        given = f"`{v.values.get('tank.modes', 'a value')}` beside a list of coefficients"
+        yield _finding("tank.modes", "must not be set where the slosh coefficients are given", given, fix)
+    if v.values.get("tank.liquid.damping_ratio", 0.0) > 0.0:
+        rule = "must not be set where the slosh coefficients are given"
+        fix = "leave it out and give each mode its own `damping_ratio`, or write `coefficients: computed`"
+        given = f"`{shown(v['tank.liquid.damping_ratio'])}` beside a list of coefficients"
+        yield _finding("tank.liquid.damping_ratio", rule, given, fix)
+
+
+def tank_extent(v: Values) -> tuple[float, float] | None:
+    """Largest inner (width, height) of the tank in m, None where they are not known."""
+    if v.has("tank.radius"):
+        return 2.0 * v["tank.radius"], 2.0 * v["tank.radius"]
+    if v.has("tank.width", "tank.height"):
+        return v["tank.width"], v["tank.height"]
+    if v.has("tank.points"):
+        points = v["tank.points"]
+        return 2.0 * max(y for y, _ in points), max(z for _, z in points)
+    return None
+
+
+def _tank_on_wagon(v: Values) -> Iterator[Finding]:
+    bottom = "tank.bottom_height"
+    if v.has("tank.shape") and bottom not in v.explicit:
+        fix = "write `bottom_height: 1.15 m`, the height of the tank's lowest inner point above the rail head"
+        yield _finding(bottom, "is required for a tank on a wagon", "nothing", fix)
+    if v.has("tank.length", "wagon.pivot_spacing"):
+        most = LONGEST_TANK * v["wagon.pivot_spacing"]
+        if v["tank.length"] > most:
+            rule = f"must be at most {shown(LONGEST_TANK)} pivot spacings, {shown(most)} m"
+            yield _finding("tank.length", rule, _metres(v["tank.length"]), "write a shorter tank or a longer wagon")
+    extent = tank_extent(v)
+    if extent is None:
+        return
+    width, height = extent
+    if width > WIDEST_TANK:
+        rule = f"must fit on a wagon: at most {shown(WIDEST_TANK)} m wide"
+        yield _finding(_dimension_key(v, "width"), rule, f"a width of {_metres(width)}", "write a narrower tank")
+    if v.has(bottom) and bottom in v.explicit and v[bottom] + height > HIGHEST_TANK:
+        rule = f"must fit on a wagon: its top at most {shown(HIGHEST_TANK)} m above the rail head"
+        given = f"a top at {_metres(v[bottom] + height)}"
+        yield _finding(_dimension_key(v, "height"), rule, given, "write a lower tank or `bottom_height`")
+
+
+def _dimension_key(v: Values, name: str) -> str:
+    keys = (f"tank.{name}", "tank.radius", "tank.points")
+    return next(key for key in keys if v.has(key))
+
+
+Rule = Callable[[Values], Iterator[Finding]]
+TANK_RULES: Final[tuple[Rule, ...]] = (_coefficients,)
+SCENARIO_RULES: Final[tuple[Rule, ...]] = (
+    *TANK_RULES,
+    _wheels_apart,
+    _bogies_apart,
+    _domain_holds_wagon,
+    _elements,
+    _adhesion,
+    _braking,
+    _rows,
+    _tank_on_wagon,
+)
+
+
+def broken_rules(values: Values, rules: tuple[Rule, ...]) -> tuple[Finding, ...]:
+    """Everything the given rules have against the values."""
+    return tuple(finding for rule in rules for finding in rule(values))

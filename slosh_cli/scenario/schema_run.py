@@ -1,0 +1,161 @@
+"""Track, contact, braking, solver and output: everything of a stop that is neither wagon nor tank."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field
+
+from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.leaves import Number, Quantity, Range, not_an_option, refused_error
+from slosh_cli.scenario.units import plain
+
+
+class Rail(Part):
+    """One rail as an Euler-Bernoulli beam."""
+
+    youngs_modulus: Annotated[float, Quantity("modulus", Range(1e9, 1e13), "200 GPa")] = Field(
+        description="Young's modulus of the rail steel, Pa."
+    )
+    second_moment: Annotated[float, Quantity("second_moment", Range(1e-8, 1e-1), "3.06e-5 m^4")] = Field(
+        description="Second moment of area of one rail about its level axis, m^4."
+    )
+    mass_per_length: Annotated[float, Quantity("mass_per_length", Range(5.0, 1e4), "60 kg/m")] = Field(
+        description="Mass of one rail per length, kg/m."
+    )
+
+
+class Foundation(Part):
+    """The damped Pasternak foundation under one rail."""
+
+    stiffness: Annotated[float, Quantity("stiffness_per_length", Range(1e5, 1e11), "1.0e7 N/m^2")] = Field(
+        description="Vertical stiffness per length of rail, N/m^2."
+    )
+    shear_stiffness: Annotated[float, Quantity("force", Range(0.0, 1e10), "666875 N")] = Field(
+        description="Stiffness of the shear layer, N; 0 N leaves a Winkler foundation."
+    )
+    damping: Annotated[float, Quantity("damping_per_length", Range(0.0, 1e9), "4.9e3 N s/m^2")] = Field(
+        description="Vertical damping per length of rail, N s/m^2."
+    )
+    shear_damping: Annotated[float, Quantity("shear_damping", Range(0.0, 1e9), "1.0e3 N s")] = Field(
+        description="Damping of the shear layer, N s."
+    )
+
+
+class Domain(Part):
+    """The stretch of rail that moves with the wagon."""
+
+    length: Annotated[float, Quantity("length", Range(5.0, 1000.0), "50 m")] = Field(
+        description="Length of the stretch; the rail does not deflect at its ends, m."
+    )
+    element_length: Annotated[float, Quantity("length", Range(0.01, 5.0), "0.5 m")] = Field(
+        description="Length of a beam element aimed at (the mesh is fitted to the wheels), m."
+    )
+
+
+class Track(Part):
+    """The track under one rail."""
+
+    rail: Rail = Field(description="The rail.")
+    foundation: Foundation = Field(description="What the rail lies on.")
+    domain: Domain = Field(description="How much of it is computed, and how finely.")
+
+
+class Adhesion(Part):
+    """Parameters of Polach's creep force law, mu = mu0 ((1 - A) exp(-B v) + A)."""
+
+    mu0: Annotated[float, Number(Range(0.005, 1.5), "0.55")] = Field(
+        description="Coefficient of friction at zero slip velocity."
+    )
+    A: Annotated[float, Number(Range(0.0, 1.0), "0.4")] = Field(
+        description="Friction at infinite slip velocity, as a fraction of mu0."
+    )
+    B: Annotated[float, Quantity("inverse_speed", Range(0.0, 100.0), "0.6 s/m")] = Field(
+        description="Rate at which friction falls with slip velocity, s/m."
+    )
+    kA: Annotated[float, Number(Range(0.001, 1.0), "1.0")] = Field(  # noqa: N815 - the symbol of the law
+        description="Reduction factor in the area of adhesion."
+    )
+    kS: Annotated[float, Number(Range(0.001, 1.0), "0.4")] = Field(  # noqa: N815 - the symbol of the law
+        description="Reduction factor in the area of slip; at most kA."
+    )
+
+
+ADHESIONS: dict[str, Adhesion] = {
+    "dry": Adhesion(mu0=0.55, A=0.40, B=0.60, kA=1.00, kS=0.40),
+    "wet": Adhesion(mu0=0.30, A=0.40, B=0.20, kA=0.30, kS=0.10),
+}
+"""Polach's sets for dry and wet rail (Wear 258, 2005)."""
+
+
+def named_adhesion(value: Any) -> Any:
+    """The parameter set behind `dry` and `wet`; a mapping is passed on."""
+    if isinstance(value, str) and value in ADHESIONS:
+        return ADHESIONS[value]
+    if isinstance(value, dict | Adhesion):
+        return value
+    refused = not_an_option(value, tuple(ADHESIONS))
+    own = "{mu0: 0.55, A: 0.4, B: 0.6 s/m, kA: 1.0, kS: 0.4}"
+    rule = "must be `dry`, `wet` or a mapping of mu0, A, B, kA and kS"
+    raise refused_error(ValueRefused(rule, plain(value), f"{refused.fix} or `{own}`"))
+
+
+class Contact(Part):
+    """The contact of wheel and rail."""
+
+    youngs_modulus: Annotated[float, Quantity("modulus", Range(1e9, 1e13), "210 GPa")] = Field(
+        description="Young's modulus of wheel and rail, Pa."
+    )
+    poisson_ratio: Annotated[float, Number(Range(0.0, 0.5, below=True), "0.3")] = Field(
+        description="Poisson's ratio of wheel and rail."
+    )
+    rail_crown_radius: Annotated[float, Quantity("length", Range(0.01, 20.0), "0.3 m")] = Field(
+        description="Radius of the rail head across the track, m."
+    )
+    kalker_c11: Annotated[float, Number(Range(0.1, 100.0), "4.12")] = Field(
+        description="Kalker's longitudinal creep coefficient."
+    )
+    adhesion: Annotated[Adhesion, BeforeValidator(named_adhesion)] = Field(
+        description="`dry`, `wet`, or Polach's parameters in a mapping."
+    )
+    stiffness: Annotated[float | None, Quantity("contact_stiffness", Range(1e7, 1e15), "9.4e10 N/m^1.5")] = Field(
+        default=None,
+        description="Hertzian contact stiffness of one wheel, N/m^1.5, instead of the computed one.",
+    )
+
+
+class Braking(Part):
+    """The stop."""
+
+    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
+        description="Speed at the start of the run, m/s."
+    )
+    torque: Annotated[float, Quantity("torque", Range(0.0, 1e6), "5 kN m")] = Field(
+        description="Brake torque per wheel, N m (a wheelset has two wheels)."
+    )
+    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
+        description="When the brakes set in, after the start of the run, s."
+    )
+    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
+        default=0.02, description="The wagon counts as stopped when its speed falls to this, m/s."
+    )
+
+
+class Solver(Part):
+    """Accuracy and patience."""
+
+    tolerance: Annotated[float, Number(Range(1e-8, 1e-2), "1e-4")] = Field(
+        default=1e-4, description="Relative error aimed at in the braking distance."
+    )
+    time_limit: Annotated[float, Quantity("time", Range(0.01, 1e5), "600 s")] = Field(
+        default=600.0, description="A run that has not stopped by this time ends, s."
+    )
+
+
+class Output(Part):
+    """What is written."""
+
+    interval: Annotated[float, Quantity("time", Range(1e-4, 100.0), "10 ms")] = Field(
+        default=0.01, description="Time between two rows of the history, s."
+    )

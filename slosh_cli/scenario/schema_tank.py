@@ -1,0 +1,171 @@
+"""The tank: shape, filling, liquid and slosh coefficients."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.leaves import Choice, Count, Number, Quantity, Range, not_an_option, refused_error
+from slosh_cli.scenario.polygon import Outline
+from slosh_cli.scenario.units import plain
+
+LiquidModel: TypeAlias = Literal["rigid", "modal"]
+Point: TypeAlias = tuple[float, float]
+
+_DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
+
+
+class Liquid(Part):
+    """What is in the tank and how it moves."""
+
+    model: Annotated[LiquidModel, Choice(("rigid", "modal"), later=("shallow-water",))] = Field(
+        description="`modal`: a free surface, by linear slosh modes. `rigid`: the equivalent solid load."
+    )
+    density: Annotated[float, Quantity("density", Range(50.0, 2.5e4), "830 kg/m^3")] = Field(
+        description="Density of the liquid, kg/m^3."
+    )
+    damping_ratio: Annotated[float, _DAMPING] = Field(
+        default=0.0,
+        description="Damping ratio of every computed slosh mode (given coefficients carry their own).",
+    )
+
+
+class Coefficient(Part):
+    """One longitudinal slosh mode of the whole tank, in any normalisation."""
+
+    frequency: Annotated[float, Quantity("angular_frequency", Range(1e-3, 1e3), "0.69 rad/s")] = Field(
+        description="Natural angular frequency, rad/s (a value in Hz is multiplied by 2 pi)."
+    )
+    lambda_1: Annotated[float, Quantity("mass", Range(-1e8, 1e8), "137071 kg", nonzero=True)] = Field(
+        description="Inertial coupling of the mode with the tank's longitudinal motion, kg; not zero."
+    )
+    lambda_02: Annotated[float, Quantity("first_moment", Range(-1e9, 1e9), "-68461 kg m")] = Field(
+        description="Inertial coupling of the mode with the tank's pitch about its bottom centre, kg m."
+    )
+    mu: Annotated[float, Quantity("mass", Range(0.0, 1e12, above=True), "442163 kg")] = Field(
+        description="Modal mass, kg."
+    )
+    damping_ratio: Annotated[float, _DAMPING] = Field(default=0.0, description="Damping ratio of the mode.")
+
+
+def _check_coefficients(value: Any) -> Any:
+    if isinstance(value, list | tuple) and value:
+        return value
+    if value == "computed":
+        return value
+    if isinstance(value, str):
+        refused = not_an_option(value, ("computed",))
+        rule, given, fix = "must be `computed` or a list of slosh modes", refused.given, refused.fix
+    elif isinstance(value, dict):
+        rule, given = "must be `computed` or a list of slosh modes", "a mapping"
+        fix = "write each mode as a list item: `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}`"
+    else:
+        rule, given = "must be `computed` or a list of at least one slosh mode", plain(value)
+        fix = "write `computed`, or `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}` for each mode"
+    raise refused_error(ValueRefused(rule, given, fix))
+
+
+def _coefficient_kind(value: Any) -> str:
+    return "computed" if isinstance(value, str) else "given"
+
+
+Coefficients: TypeAlias = Annotated[
+    Annotated[Literal["computed"], Tag("computed")] | Annotated[tuple[Coefficient, ...], Tag("given")],
+    Discriminator(_coefficient_kind),
+    BeforeValidator(_check_coefficients),
+]
+
+
+class TankBase(Part):
+    """What tanks of every shape have. Values are of the whole tank."""
+
+    length: Annotated[float, Quantity("length", Range(0.05, 200.0), "15.5 m")] = Field(
+        description="Inner length between the flat ends, m."
+    )
+    fill: Annotated[float, Number(Range(0.02, 0.98), "0.5")] = Field(
+        description="Depth of the liquid as a fraction of the tank's inner height."
+    )
+    bottom_height: Annotated[float, Quantity("length", Range(0.0, 6.0), "1.15 m")] = Field(
+        default=0.0,
+        description="Height of the tank's lowest inner point above the rail head, m. "
+        "Required with a wagon, without meaning for a tank alone.",
+    )
+    liquid: Liquid = Field(description="What is in the tank.")
+    coefficients: Coefficients = Field(
+        default="computed",
+        description="`computed` from the tank's geometry, or a list of slosh modes to be used as they are.",
+    )
+    modes: Annotated[int, Count(1, 20)] = Field(
+        default=1,
+        description="How many odd longitudinal modes to compute; not to be set with given coefficients.",
+    )
+
+
+class HorizontalCylinder(TankBase):
+    """A circular cylinder lying along the track."""
+
+    shape: Literal["horizontal-cylinder"] = Field(
+        default="horizontal-cylinder", description="Cross-section: a circle of the given radius."
+    )
+    radius: Annotated[float, Quantity("length", Range(0.02, 10.0), "1.5 m")] = Field(description="Inner radius, m.")
+
+    @property
+    def height(self) -> float:
+        """Inner height, m."""
+        return 2.0 * self.radius
+
+    @property
+    def width(self) -> float:
+        """Largest inner width, m."""
+        return 2.0 * self.radius
+
+
+class Rectangular(TankBase):
+    """A box."""
+
+    shape: Literal["rectangular"] = Field(default="rectangular", description="Cross-section: a rectangle.")
+    width: Annotated[float, Quantity("length", Range(0.02, 20.0), "2.4 m")] = Field(description="Inner width, m.")
+    height: Annotated[float, Quantity("length", Range(0.02, 20.0), "2.0 m")] = Field(description="Inner height, m.")
+
+
+class Elliptical(TankBase):
+    """An elliptical cylinder lying along the track, its axes upright and level."""
+
+    shape: Literal["elliptical"] = Field(default="elliptical", description="Cross-section: an ellipse.")
+    width: Annotated[float, Quantity("length", Range(0.02, 20.0), "2.6 m")] = Field(
+        description="Inner width, the level axis of the ellipse, m."
+    )
+    height: Annotated[float, Quantity("length", Range(0.02, 20.0), "2.2 m")] = Field(
+        description="Inner height, the upright axis of the ellipse, m."
+    )
+
+
+class Polygon(TankBase):
+    """A tank of any straight-sided cross-section that is symmetric about its upright centre line."""
+
+    shape: Literal["polygon"] = Field(default="polygon", description="Cross-section: a polygon.")
+    points: Annotated[tuple[Point, ...], Outline(20.0)] = Field(
+        description="Corners [y, z] in order around the section, m: y from the centre, z from the bottom."
+    )
+
+    @property
+    def height(self) -> float:
+        """Inner height, m."""
+        return max(z for _, z in self.points)
+
+    @property
+    def width(self) -> float:
+        """Largest inner width, m."""
+        return 2.0 * max(y for y, _ in self.points)
+
+
+Tank: TypeAlias = Annotated[HorizontalCylinder | Rectangular | Elliptical | Polygon, Field(discriminator="shape")]
+SHAPES: dict[str, type[TankBase]] = {
+    "horizontal-cylinder": HorizontalCylinder,
+    "rectangular": Rectangular,
+    "elliptical": Elliptical,
+    "polygon": Polygon,
+}

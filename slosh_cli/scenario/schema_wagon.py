@@ -1,0 +1,96 @@
+"""The wagon: bodies, suspension, running resistance. Values are of the whole wagon unless a text says not."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.leaves import Quantity, Range
+
+Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
+Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
+
+
+class CarBody(Part):
+    """The car body with the empty tank, without bogies, wheelsets and load."""
+
+    mass: Annotated[float, Quantity("mass", Range(500.0, 2e5), "21.3 t")] = Field(
+        description="Mass of the car body with its empty tank, kg."
+    )
+    pitch_inertia: Annotated[float, Quantity("moment_of_inertia", Range(500.0, 1e8), "4.6e5 kg m^2")] = Field(
+        description="Moment of inertia in pitch about the centre of mass, kg m^2."
+    )
+    centre_height: Annotated[float, Quantity("length", Range(0.2, 6.0), "2.2 m")] = Field(
+        description="Height of the centre of mass above the rail head, m."
+    )
+
+
+class Bogie(Part):
+    """One of the two bogie frames, without its wheelsets."""
+
+    mass: Annotated[float, Quantity("mass", Range(50.0, 3e4), "1.8 t")] = Field(
+        description="Mass of one bogie frame without its wheelsets, kg."
+    )
+    pitch_inertia: Annotated[float, Quantity("moment_of_inertia", Range(5.0, 1e6), "1700 kg m^2")] = Field(
+        description="Moment of inertia of one frame in pitch about its centre of mass, kg m^2."
+    )
+    centre_height: Annotated[float, Quantity("length", Range(0.05, 3.0), "0.55 m")] = Field(
+        description="Height of the frame's centre of mass above the rail head, m."
+    )
+    wheelbase: Annotated[float, Quantity("length", Range(0.5, 8.0), "1.8 m")] = Field(
+        description="Distance between the two axles of one bogie, m."
+    )
+
+
+class Wheelset(Part):
+    """One of the four wheelsets: two wheels on an axle."""
+
+    mass: Annotated[float, Quantity("mass", Range(50.0, 1e4), "1.4 t")] = Field(description="Mass of one wheelset, kg.")
+    spin_inertia: Annotated[float, Quantity("moment_of_inertia", Range(0.5, 5e3), "120 kg m^2")] = Field(
+        description="Moment of inertia of one wheelset about its axle, kg m^2."
+    )
+    wheel_radius: Annotated[float, Quantity("length", Range(0.1, 1.5), "0.46 m")] = Field(
+        description="Rolling radius of the wheels, m."
+    )
+
+
+class Suspension(Part):
+    """One suspension unit of the planar model: one wheel (primary) or one side of one bogie (secondary)."""
+
+    stiffness: Stiffness = Field(description="Vertical stiffness of one unit, N/m.")
+    damping: Damping = Field(description="Vertical viscous damping of one unit, N s/m.")
+
+
+class RunningResistance(Part):
+    """Running resistance of the whole wagon, constant + linear V + quadratic V^2."""
+
+    constant: Annotated[float, Quantity("force", Range(0.0, 1e5), "851 N")] = Field(
+        description="Part that does not depend on speed, N."
+    )
+    linear: Annotated[float, Quantity("damping", Range(0.0, 1e4), "13.5 N s/m")] = Field(
+        description="Factor of the speed, N s/m."
+    )
+    quadratic: Annotated[float, Quantity("quadratic_resistance", Range(0.0, 1e3), "1.244 N s^2/m^2")] = Field(
+        description="Factor of the squared speed, N s^2/m^2."
+    )
+
+
+class Wagon(Part):
+    """A four-axle wagon on two bogies."""
+
+    car_body: CarBody = Field(description="The car body with the empty tank.")
+    bogie: Bogie = Field(description="One of the two equal bogie frames.")
+    wheelset: Wheelset = Field(description="One of the four equal wheelsets.")
+    pivot_spacing: Annotated[float, Quantity("length", Range(1.5, 60.0), "12 m")] = Field(
+        description="Distance between the two bogie pivots, m."
+    )
+    traction_height: Annotated[float, Quantity("length", Range(0.0, 4.0), "0.90 m")] = Field(
+        description="Height above the rail head at which bogies and car body pull each other along, m."
+    )
+    primary_suspension: Suspension = Field(description="Between wheelset and bogie frame: one unit per wheel.")
+    secondary_suspension: Suspension = Field(
+        description="Between bogie frame and car body: one unit per bogie and side of the wagon."
+    )
+    running_resistance: RunningResistance = Field(description="Running resistance of the whole wagon.")

@@ -1,0 +1,1 @@
+"""The time integrator: TR-BDF2 over wagon, liquid, contacts and rail, with located events."""

@@ -1,0 +1,64 @@
+"""Events that end a step: lock, release, lift-off, landing, creepage floor, stop, overturning.
+
+Each event has a value that is positive until it happens. A value is *armed* once it has been clearly positive; a
+wheel just released has exactly zero speed and so cannot relock before it has turned (model section 11).
+"""
+
+from __future__ import annotations
+
+from slosh_cli.compiled import inner_kernel
+from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
+from slosh_cli.track.vectors import fill
+from slosh_cli.wagon.coordinates import BOGIE_PITCH, CAR_PITCH, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+
+# places of the event values: four of brake, four of contact, then these
+BRAKE_EVENT, CONTACT_EVENT, FLOOR_EVENT, STOP_EVENT, PITCH_EVENT = 0, 4, 8, 9, 10
+EVENT_COUNT = 11
+EVENT_TOLERANCE = 1e-6
+"""An event is reached when its value is this close to zero (m/s, or relative to torque, approach, pitch limit)."""
+LARGEST_PITCH = 0.1
+"""Small-angle kinematics say nothing beyond this pitch, rad (model section 9)."""
+
+
+@inner_kernel
+def event_values(model, point, locked, airborne, torque, values):
+    """Values of all events at `point` into `values` (EVENT_COUNT,); those that cannot happen are 1."""
+    radius = model.wagon.wheel_radius
+    fill(values, 1.0)
+    speed = point.v[0]
+    for i in range(WHEELS):
+        if locked[i]:
+            values[BRAKE_EVENT + i] = 1.0 - point.creep[i] * radius / torque
+        elif torque > 0.0:
+            values[BRAKE_EVENT + i] = radius * point.v[WHEEL_SPIN + i]
+        approach = point.rail[model.rail.contact[i]] - point.q[WHEEL_HEAVE + i]
+        relative = approach / model.control.approach_scale
+        values[CONTACT_EVENT + i] = -relative if airborne[i] else relative
+    values[FLOOR_EVENT] = speed - CREEPAGE_SPEED_FLOOR
+    values[STOP_EVENT] = speed - model.control.stop_speed
+    pitch = abs(point.q[CAR_PITCH])
+    for bogie in range(2):
+        pitch = max(pitch, abs(point.q[BOGIE_PITCH + 2 * bogie]))
+    values[PITCH_EVENT] = 1.0 - pitch / LARGEST_PITCH
+
+
+@inner_kernel
+def shorter_step(before, after, step):
+    """Step (s) that ends at the first event between values `before` and `after`; `step` when there is none.
+
+    Linear interpolation; a wheel's event that was not armed and went the wrong way at once asks for a tenth.
+    """
+    best = step
+    for k in range(before.size):
+        if after[k] < -EVENT_TOLERANCE:
+            if before[k] > EVENT_TOLERANCE:
+                best = min(best, step * before[k] / (before[k] - after[k]))
+            elif before[k] > -EVENT_TOLERANCE and k < FLOOR_EVENT:
+                best = min(best, 0.1 * step)
+    return best
+
+
+@inner_kernel
+def reached(before, after, k):
+    """True when event `k` has come about at the end of a step with values `before` and `after`."""
+    return before[k] > EVENT_TOLERANCE and after[k] <= EVENT_TOLERANCE

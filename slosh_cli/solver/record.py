@@ -1,0 +1,96 @@
+"""Dense output: the integrator's own interpolation at the output instants, and the extremes between steps."""
+
+from __future__ import annotations
+
+from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.solver.problem import LOSSES
+from slosh_cli.solver.step import GAMMA
+from slosh_cli.track.contact import creep_force, normal_force
+from slosh_cli.wagon.brake import brake_torque
+from slosh_cli.wagon.coordinates import COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+
+# columns of a record; slosh amplitudes and accelerations follow at the end
+TIME_COLUMN = 0
+PLACE_COLUMN = 1
+SPEED_COLUMN = PLACE_COLUMN + COORDINATES
+ACCELERATION_COLUMN = SPEED_COLUMN + COORDINATES
+NORMAL_COLUMN = ACCELERATION_COLUMN + COORDINATES
+CREEP_COLUMN = NORMAL_COLUMN + WHEELS
+TORQUE_COLUMN = CREEP_COLUMN + WHEELS
+RAIL_COLUMN = TORQUE_COLUMN + WHEELS
+ENERGY_COLUMN = RAIL_COLUMN + WHEELS
+LOSS_COLUMN = ENERGY_COLUMN + 3
+RESIDUAL_COLUMN = LOSS_COLUMN + LOSSES
+SLOSH_COLUMN = RESIDUAL_COLUMN + 1
+
+
+@inner_kernel
+def _hermite(left, left_rate, right, right_rate, step, part):
+    """Cubic with given values and rates at both ends of `step` (s), at its fraction `part`."""
+    rest = 1.0 - part
+    return (
+        rest * rest * (1.0 + 2.0 * part) * left
+        + part * part * (3.0 - 2.0 * part) * right
+        + step * part * rest * (rest * left_rate - part * right_rate)
+    )
+
+
+@inner_kernel
+def _parabola(left, middle, right, part):
+    """Parabola through the values at 0, GAMMA and 1, at `part`."""
+    by_left = (part - GAMMA) * (part - 1.0) / GAMMA
+    by_middle = part * (part - 1.0) / (GAMMA * (GAMMA - 1.0))
+    by_right = part * (part - GAMMA) / (1.0 - GAMMA)
+    return by_left * left + by_middle * middle + by_right * right
+
+
+@kernel
+def record_row(model, state, row, time, step, part, phase):
+    """Interpolate the step from `state.start` to `state.end` at its fraction `part` into `row`."""
+    start, middle, end = state.start, state.middle, state.end
+    row[TIME_COLUMN] = time + part * step
+    for i in range(COORDINATES):
+        row[PLACE_COLUMN + i] = _hermite(start.q[i], start.v[i], end.q[i], end.v[i], step, part)
+        row[SPEED_COLUMN + i] = _hermite(start.v[i], start.a[i], end.v[i], end.a[i], step, part)
+        row[ACCELERATION_COLUMN + i] = _parabola(start.a[i], middle.a[i], end.a[i], part)
+    torque = brake_torque(model.brake, time + part * step, phase)
+    radius = model.wagon.wheel_radius
+    for i in range(WHEELS):
+        under = model.rail.contact[i]
+        rail = _hermite(start.rail[under], start.rail_rate[under], end.rail[under], end.rail_rate[under], step, part)
+        normal, _ = normal_force(model.contact, rail - row[PLACE_COLUMN + WHEEL_HEAVE + i])
+        speed = row[SPEED_COLUMN]
+        creep, _, _, _ = creep_force(model.contact, normal, speed - radius * row[SPEED_COLUMN + WHEEL_SPIN + i], speed)
+        row[RAIL_COLUMN + i] = rail
+        row[NORMAL_COLUMN + i] = normal
+        row[CREEP_COLUMN + i] = creep
+        row[TORQUE_COLUMN + i] = creep * radius if state.locked[i] else torque
+    for k in range(3):
+        row[ENERGY_COLUMN + k] = (1.0 - part) * state.energies_before[k] + part * state.energies[k]
+    for k in range(LOSSES):
+        row[LOSS_COLUMN + k] = _hermite(
+            state.losses_before[k], start.power[k], state.losses[k], end.power[k], step, part
+        )
+    row[RESIDUAL_COLUMN] = (1.0 - part) * state.residual[0] + part * state.residual[1]
+    modes = start.slosh.size
+    for n in range(modes):
+        row[SLOSH_COLUMN + n] = _hermite(
+            start.slosh[n], start.slosh_rate[n], end.slosh[n], end.slosh_rate[n], step, part
+        )
+        row[SLOSH_COLUMN + modes + n] = _parabola(
+            start.slosh_second[n], middle.slosh_second[n], end.slosh_second[n], part
+        )
+
+
+@inner_kernel
+def step_extremes(left, middle, right):
+    """Least and largest value of the parabola through a step's three stages."""
+    least, largest = min(left, middle, right), max(left, middle, right)
+    first = (middle - left) / GAMMA
+    second = (right - middle) / (1.0 - GAMMA) - first
+    if second != 0.0:
+        part = 0.5 * (GAMMA - first / second)
+        if 0.0 < part < 1.0:
+            value = _parabola(left, middle, right, part)
+            least, largest = min(least, value), max(largest, value)
+    return least, largest

@@ -1,0 +1,88 @@
+"""Drives the compiled loop: hands it row buffers, reports progress, stops when asked."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from slosh_cli.solver import advance as loop
+from slosh_cli.solver.events import EVENT_COUNT
+from slosh_cli.solver.problem import Array
+from slosh_cli.solver.record import SLOSH_COLUMN, record_row
+from slosh_cli.solver.setup import Problem
+from slosh_cli.solver.state import NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_scratch, new_state
+
+Progress = Callable[[float, float], None]
+"""Called now and then with the fraction done (0 to 1) and the speed in m/s."""
+
+STEPS_PER_CALL = 200
+FIRST_STEP = 1e-3
+"""First step to try, s."""
+
+
+class Cancel(Protocol):
+    """Something like threading.Event that says when to give up."""
+
+    def is_set(self) -> bool:
+        """True when the run should end."""
+        ...
+
+
+class Cancelled(Exception):  # noqa: N818  (not an error: somebody asked for it)
+    """The run was cancelled from outside."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Raw outcome: the record (rows, columns of `record`), the final state, how it ended, seconds of solving."""
+
+    rows: Array
+    state: State
+    outcome: int
+    seconds: float
+
+
+def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel | None = None) -> Run:
+    """Run the stop to its end. Raises Cancelled when `cancel` is set before that."""
+    model, modes = problem.model, problem.start.slosh.size
+    state = new_state(problem.start, EVENT_COUNT, FIRST_STEP)
+    scratch = new_scratch(problem.start.rail.size, modes)
+    per_step = int(model.control.longest_step / model.control.interval) + 2
+    buffer = np.zeros((max(2048, 2 * per_step), SLOSH_COLUMN + 2 * modes))
+    filled: list[Array] = []
+    outcome = loop.RUNNING if loop.begin(model, scratch, state) else loop.UNSOLVED
+    loop.advance(model, scratch, state, buffer, 0)  # loads or compiles the machine code before the clock starts
+    began = time.perf_counter()
+    while outcome in (loop.RUNNING, loop.ROWS_FULL):
+        outcome = loop.advance(model, scratch, state, buffer, STEPS_PER_CALL)
+        if outcome == loop.ROWS_FULL:
+            filled.append(buffer[: state.counts[ROWS]].copy())
+            state.counts[ROWS] = 0
+        if cancel is not None and cancel.is_set():
+            raise Cancelled
+        if progress is not None:
+            progress(_fraction(problem, state), float(state.start.v[0]))
+    seconds = time.perf_counter() - began
+    filled.append(buffer[: state.counts[ROWS]].copy())
+    return Run(np.concatenate([*filled, _last_row(problem, state, filled)]), state, outcome, seconds)
+
+
+def _last_row(problem: Problem, state: State, filled: list[Array]) -> Array:
+    """The end of the run as a row of its own, unless an output instant coincides with it."""
+    now, interval = state.clock[TIME], problem.model.control.interval
+    if abs(state.clock[NEXT_OUTPUT] - interval - now) < 1e-9 * max(interval, now):
+        return filled[-1][:0]
+    row = np.zeros((1, filled[-1].shape[1]))
+    record_row(problem.model, state, row[0], now, 1.0, 0.0, state.counts[PHASE])
+    return row
+
+
+def _fraction(problem: Problem, state: State) -> float:
+    """How far the run has come: by speed lost or by time, whichever is further."""
+    control = problem.model.control
+    by_speed = 1.0 - float(state.start.v[0]) / float(control.speed_scale[0])
+    return min(max(by_speed, float(state.clock[TIME]) / control.time_limit, 0.0), 1.0)

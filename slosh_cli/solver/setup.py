@@ -1,0 +1,137 @@
+"""From a scenario to a stop ready to integrate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slosh_cli.errors import PhysicsError
+from slosh_cli.scenario import Scenario
+from slosh_cli.solver.initial import initial_point
+from slosh_cli.solver.problem import Array, Control, Model, Point
+from slosh_cli.tank.coefficients import slosh_modes
+from slosh_cli.tank.load import frozen_load
+from slosh_cli.tank.modal import ModalLiquid, modal_liquid
+from slosh_cli.track.contact import contact_model
+from slosh_cli.track.mem import RailModel, critical_speed, rail_model
+from slosh_cli.wagon.brake import Brake
+from slosh_cli.wagon.coordinates import (
+    BOGIE_HEAVE,
+    BOGIE_PITCH,
+    CAR_HEAVE,
+    CAR_PITCH,
+    COORDINATES,
+    POSITION,
+    WHEEL_HEAVE,
+    WHEEL_SPIN,
+    WHEELS,
+)
+from slosh_cli.wagon.model import GRAVITY, WagonModel, wagon_model, wheel_positions
+
+HALF = 0.5
+"""One rail carries half of the wagon."""
+LOCAL_TOLERANCE_FACTOR = 10.0
+"""Local error per step over tolerance^1.5; with order 2 the distance error then goes as the tolerance itself."""
+LONGEST_STEP = 0.25
+"""No step is longer than this, s: wheel loads are looked at often enough not to miss their extremes."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A stop ready to integrate: its constants and its state at t = 0 (accelerations still open)."""
+
+    model: Model
+    start: Point
+
+    @property
+    def weight(self) -> float:
+        """Weight of the half wagon with its load, N."""
+        return -float(self.model.wagon.weight.sum())
+
+
+def problem(scenario: Scenario) -> Problem:
+    """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
+    load = frozen_load(scenario.tank)
+    wagon = wagon_model(scenario.wagon, scenario.tank.bottom_height, load)
+    liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
+    rail = rail_model(scenario.track, wheel_positions(scenario.wagon))
+    contact = contact_model(scenario.contact, wagon.wheel_radius)
+    _check_mass_matrix(wagon, liquid)
+    _check_speed(scenario, rail)
+    start = initial_point(wagon, rail, contact, scenario.braking.initial_speed, liquid.mu.size)
+    model = Model(
+        wagon=wagon,
+        liquid=liquid,
+        rail=rail,
+        contact=contact,
+        brake=Brake(scenario.braking.torque, scenario.braking.onset),
+        control=_control(scenario, wagon, liquid, start, contact.stiffness),
+    )
+    return Problem(model, start)
+
+
+def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:
+    """Refuse slosh coefficients whose kinetic energy could be negative."""
+    modes = liquid.mu.size
+    mass = np.zeros((COORDINATES + modes, COORDINATES + modes))
+    mass[:COORDINATES, :COORDINATES] = wagon.mass
+    for n in range(modes):
+        row = liquid.lambda_1[n] * wagon.tank_row
+        row[CAR_PITCH] += liquid.lambda_02[n]
+        mass[COORDINATES + n, :COORDINATES] = mass[:COORDINATES, COORDINATES + n] = row
+        mass[COORDINATES + n, COORDINATES + n] = liquid.mu[n]
+    size = np.sqrt(np.diag(mass))
+    if np.linalg.eigvalsh(mass / np.outer(size, size))[0] <= 0:
+        raise PhysicsError(
+            "The mass matrix is not positive definite: the slosh coefficients carry more mass than the tank holds. "
+            "Give lambda_1, lambda_02 and mu of the whole tank; lambda_1^2/mu is part of the liquid's mass.",
+            "tank.coefficients",
+        )
+
+
+def _check_speed(scenario: Scenario, rail: RailModel) -> None:
+    limit = critical_speed(rail)
+    if scenario.braking.initial_speed >= limit:
+        raise PhysicsError(
+            f"The initial speed must stay below the track's critical speed of {limit:.1f} m/s, but is "
+            f"{scenario.braking.initial_speed:.1f} m/s: no steady rail shape exists there.",
+            "braking.initial_speed",
+        )
+
+
+def _scales(scenario: Scenario, sag: Array) -> tuple[Array, Array]:
+    """Scales of velocities and places (15,) each, from V0 and from how far the wagon sags (m) under its weight."""
+    speeds = np.full(COORDINATES, scenario.braking.initial_speed)
+    speeds[WHEEL_SPIN:] /= scenario.wagon.wheelset.wheel_radius
+    places = np.full(COORDINATES, np.inf)
+    heaves = [CAR_HEAVE, BOGIE_HEAVE, BOGIE_HEAVE + 2, *range(WHEEL_HEAVE, WHEEL_HEAVE + WHEELS)]
+    places[heaves] = np.abs(sag[heaves])
+    arms = {CAR_PITCH: scenario.wagon.pivot_spacing, BOGIE_PITCH: scenario.wagon.bogie.wheelbase}
+    for pitch, arm in arms.items():
+        places[pitch] = np.abs(sag[pitch - 1]) / (0.5 * arm)
+    places[BOGIE_PITCH + 2] = places[BOGIE_PITCH]
+    speeds[heaves] = np.sqrt(GRAVITY * places[heaves])
+    for pitch, heave in ((CAR_PITCH, CAR_HEAVE), (BOGIE_PITCH, BOGIE_HEAVE), (BOGIE_PITCH + 2, BOGIE_HEAVE + 2)):
+        speeds[pitch] = places[pitch] * speeds[heave] / places[heave]
+    return speeds, places
+
+
+def _control(
+    scenario: Scenario, wagon: WagonModel, liquid: ModalLiquid, start: Point, contact_stiffness: float
+) -> Control:
+    speed_scale, place_scale = _scales(scenario, start.q)
+    load = float(start.normal.mean())
+    coupling = float(np.abs(liquid.lambda_1).max(initial=1.0))
+    return Control(
+        local_tolerance=LOCAL_TOLERANCE_FACTOR * scenario.solver.tolerance**1.5,
+        speed_scale=speed_scale,
+        place_scale=place_scale,
+        slosh_scale=scenario.braking.initial_speed * float(wagon.mass[POSITION, POSITION]) / coupling,
+        load_scale=load,
+        approach_scale=(load / contact_stiffness) ** (2 / 3),
+        stop_speed=scenario.braking.stop_speed,
+        time_limit=scenario.solver.time_limit,
+        longest_step=LONGEST_STEP,
+        interval=scenario.output.interval,
+    )

@@ -1,0 +1,141 @@
+"""The moving parts of a run: three points of a step, clocks, sums and the scratch arrays of the kernels."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slosh_cli.solver.problem import LOSSES, Array, Point, empty_point
+from slosh_cli.wagon.coordinates import COORDINATES, WHEELS
+
+# places in State.clock
+TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC = range(7)
+# places in State.counts
+STEPS, REJECTED, PHASE, ROWS, STALLED = range(5)
+
+
+class State(NamedTuple):
+    """Everything a run changes. `start`, `middle`, `end` are the stages of the step in hand.
+
+    `losses` (7,) J as in `ledger`, `residual` (3,): before, now, largest; `locked`, `airborne` (4,) flags;
+    `locked_time` (4,) s; `least`, `largest` (4,) wheel loads (N) since onset; `surface` (1,) largest rise, m;
+    `load_sum` (2,): N s of all wheels since onset, and the s.
+    """
+
+    start: Point
+    middle: Point
+    end: Point
+    clock: Array
+    counts: NDArray[np.int64]
+    work: NDArray[np.int64]
+    locked: NDArray[np.bool_]
+    airborne: NDArray[np.bool_]
+    energies_before: Array
+    energies: Array
+    losses_before: Array
+    losses: Array
+    residual: Array
+    locked_time: Array
+    least: Array
+    largest: Array
+    surface: Array
+    load_sum: Array
+    lifted: NDArray[np.int64]
+    values_before: Array
+    values: Array
+
+
+class Scratch(NamedTuple):
+    """Work space of the kernels; nothing in it outlives a step."""
+
+    base: Point
+    rail_factors: Array
+    flexibility: Array
+    missing: Array
+    combination: Array
+    rail_error: Array
+    rail_error_rate: Array
+    rail_zero: Array
+    slosh_zero: Array
+    linear: Array
+    jacobian: Array
+    right: Array
+    update: Array
+    q_error: Array
+    v_error: Array
+    pivots: NDArray[np.int64]
+    contact_flexibility: Array
+    contact_inverse: Array
+    small: Array
+    small_right: Array
+    small_pivots: NDArray[np.int64]
+    load_before: Array
+    load_change: Array
+    load_gap: Array
+    normal_slope: Array
+    creep_by_normal: Array
+    creep_by_slip: Array
+    creep_by_speed: Array
+    resistance_slope: Array
+    free: Array
+
+
+def new_scratch(unknowns: int, modes: int) -> Scratch:
+    """Work space for a rail of `unknowns` and a liquid of `modes`."""
+    square, row = (COORDINATES, COORDINATES), COORDINATES
+    return Scratch(
+        base=empty_point(unknowns, modes),
+        rail_factors=np.zeros((unknowns, 7)),
+        flexibility=np.zeros((unknowns, WHEELS)),
+        **{name: np.zeros(unknowns) for name in _RAIL_VECTORS},
+        slosh_zero=np.zeros(modes),
+        linear=np.zeros(square),
+        jacobian=np.zeros(square),
+        **{name: np.zeros(row) for name in ("right", "update", "q_error", "v_error")},
+        pivots=np.zeros(row, dtype=np.int64),
+        **{name: np.zeros((WHEELS, WHEELS)) for name in ("contact_flexibility", "contact_inverse", "small")},
+        small_right=np.zeros(WHEELS),
+        small_pivots=np.zeros(WHEELS, dtype=np.int64),
+        **{name: np.zeros(WHEELS) for name in _WHEEL_VECTORS},
+        resistance_slope=np.zeros(1),
+        free=np.zeros(WHEELS),
+    )
+
+
+_RAIL_VECTORS = ("missing", "combination", "rail_error", "rail_error_rate", "rail_zero")
+_WHEEL_VECTORS = (
+    "load_before", "load_change", "load_gap", "normal_slope",
+    "creep_by_normal", "creep_by_slip", "creep_by_speed",
+)  # fmt: skip
+
+
+def new_state(start: Point, events: int, first_step: float) -> State:
+    """State at t = 0 from the initial `start`; (events,) event values; the first step to try in s."""
+    unknowns, modes = start.rail.size, start.slosh.size
+    clock = np.zeros(7)
+    clock[NEXT_STEP] = first_step
+    return State(
+        start=start,
+        middle=empty_point(unknowns, modes),
+        end=empty_point(unknowns, modes),
+        clock=clock,
+        counts=np.zeros(5, dtype=np.int64),
+        work=np.zeros(4, dtype=np.int64),
+        locked=np.zeros(WHEELS, dtype=np.bool_),
+        airborne=np.zeros(WHEELS, dtype=np.bool_),
+        energies_before=np.zeros(3),
+        energies=np.zeros(3),
+        losses_before=np.zeros(LOSSES),
+        losses=np.zeros(LOSSES),
+        residual=np.zeros(3),
+        locked_time=np.zeros(WHEELS),
+        least=np.full(WHEELS, np.inf),
+        largest=np.full(WHEELS, -np.inf),
+        surface=np.zeros(1),
+        load_sum=np.zeros(2),
+        lifted=np.zeros(1, dtype=np.int64),
+        values_before=np.ones(events),
+        values=np.ones(events),
+    )

@@ -1,0 +1,173 @@
+"""One trial step of TR-BDF2 with its error estimate.
+
+The trapezoidal rule to `t + gamma h`, then BDF2 to `t + h`, gamma = 2 - sqrt 2, written as a singly diagonally
+implicit method of order 2, L-stable, with an embedded third-order companion: R. E. Bank et al., IEEE Trans. CAD 4
+(1985) 436-451; M. E. Hosea and L. F. Shampine, Appl. Numer. Math. 20 (1996) 21-37.
+"""
+
+from __future__ import annotations
+
+import math
+
+from slosh_cli.compiled import inner_kernel
+from slosh_cli.solver.dense import solve_dense
+from slosh_cli.solver.ledger import balance
+from slosh_cli.solver.stage import RIGHT_HAND_SIDES, add_load_change, prepare_stage, solve_stage
+from slosh_cli.track.banded import solve_banded_one
+from slosh_cli.track.moving import rail_residual
+from slosh_cli.track.vectors import copy
+from slosh_cli.wagon.brake import brake_torque
+from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+
+GAMMA = 2.0 - math.sqrt(2.0)
+"""The middle stage lies at this part of the step."""
+DIAGONAL = 0.5 * GAMMA
+OUTER = 0.25 * math.sqrt(2.0)
+"""Weights of start and middle; the end has `DIAGONAL`."""
+ERROR_START = (4.0 * OUTER - 1.0) / 3.0
+ERROR_MIDDLE = -1.0 / 3.0
+ERROR_END = 2.0 * DIAGONAL / 3.0
+"""Weights less those of the third-order companion."""
+
+
+@inner_kernel
+def _predict(values, rates, seconds, more_rates, more_seconds, weight, weight_more, diagonal, base, base_rates):
+    """Coordinates and velocities of a stage but for its own accelerations, into `base`, `base_rates`."""
+    for i in range(values.size):
+        base_rates[i] = rates[i] + weight * seconds[i] + weight_more * more_seconds[i]
+        base[i] = values[i] + weight * rates[i] + weight_more * more_rates[i] + diagonal * base_rates[i]
+
+
+@inner_kernel
+def _predict_point(start, more, weight, weight_more, diagonal, base):
+    _predict(start.q, start.v, start.a, more.v, more.a, weight, weight_more, diagonal, base.q, base.v)
+    _predict(
+        start.rail, start.rail_rate, start.rail_second, more.rail_rate, more.rail_second,
+        weight, weight_more, diagonal, base.rail, base.rail_rate,
+    )  # fmt: skip
+    _predict(
+        start.slosh, start.slosh_rate, start.slosh_second, more.slosh_rate, more.slosh_second,
+        weight, weight_more, diagonal, base.slosh, base.slosh_rate,
+    )  # fmt: skip
+
+
+@inner_kernel
+def _guess(source, point):
+    """Start a stage's iteration from the accelerations and forces of another point."""
+    copy(source.a, point.a)
+    copy(source.rail_second, point.rail_second)
+    copy(source.normal, point.normal)
+
+
+@inner_kernel
+def take_step(model, scratch, work, start, middle, end, energies, locked, time, step, phase):
+    """Try a step of `step` (s) from `start` at `time` (s).
+
+    Returns the error over the allowed one, negative where a stage could not be solved. Fills `middle` and `end`, their powers, and the energies (3,) at the end. `start.power` must be known.
+    """
+    implicit = DIAGONAL * step
+    speed = start.v[0] + step * start.a[0]
+    prepare_stage(model, scratch, work, implicit, speed, start.a[0])
+    base = scratch.base
+    _predict_point(start, start, implicit, 0.0, implicit, base)
+    _guess(start, middle)
+    torque = brake_torque(model.brake, time + GAMMA * step, phase)
+    if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque):
+        return -1.0
+    _predict_point(start, middle, OUTER * step, OUTER * step, implicit, base)
+    _guess(middle, end)
+    torque = brake_torque(model.brake, time + step, phase)
+    if not solve_stage(model, scratch, work, base, end, locked, implicit, torque):
+        return -1.0
+    error = _error(model, scratch, work, start, middle, end, locked, step)
+    if error <= 1.0:
+        balance(model, middle, energies)
+        balance(model, end, energies)
+    return error
+
+
+@inner_kernel
+def _difference(start, middle, end, step, result):
+    for i in range(start.size):
+        result[i] = step * (ERROR_START * start[i] + ERROR_MIDDLE * middle[i] + ERROR_END * end[i])
+
+
+@inner_kernel
+def _rail_error(model, scratch, work, start, middle, end, step, implicit, place):
+    """Rail part of the filtered error: accelerations-like vector into `scratch.missing`, places into `place`."""
+    rail = model.rail
+    error, error_rate = scratch.rail_error, scratch.rail_error_rate
+    _difference(start.rail_rate, middle.rail_rate, end.rail_rate, step, error)
+    _difference(start.rail_second, middle.rail_second, end.rail_second, step, error_rate)
+    for i in range(error.size):
+        error[i] *= -implicit
+    rail_residual(rail, error, scratch.rail_zero, error_rate, end.v[0], end.a[0], scratch.combination, scratch.missing)
+    solve_banded_one(scratch.rail_factors, scratch.missing)
+    work[RIGHT_HAND_SIDES] += 1
+    for i in range(WHEELS):
+        under = rail.contact[i]
+        place[i] = -error[under] / implicit + implicit * scratch.missing[under]
+
+
+@inner_kernel
+def _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right):
+    """Slosh part of the filtered error on the wagon's right-hand side; returns the size of the modes' own error."""
+    liquid, size = model.liquid, 0.0
+    tank = 0.0
+    for i in range(COORDINATES):
+        tank += model.wagon.tank_row[i] * v_error[i]
+    for n in range(start.slosh.size):
+        place = step * (
+            ERROR_START * start.slosh_rate[n] + ERROR_MIDDLE * middle.slosh_rate[n] + ERROR_END * end.slosh_rate[n]
+        )
+        rate = step * (
+            ERROR_START * start.slosh_second[n]
+            + ERROR_MIDDLE * middle.slosh_second[n]
+            + ERROR_END * end.slosh_second[n]
+        )
+        inertia = liquid.mu[n] + implicit * liquid.damping[n] + implicit * implicit * liquid.stiffness[n]
+        arm = liquid.lambda_02[n] - implicit * implicit * liquid.pitch_weight[n]
+        own = (
+            liquid.mu[n] * rate
+            + liquid.lambda_1[n] * tank
+            + liquid.lambda_02[n] * v_error[CAR_PITCH]
+            - implicit * (liquid.stiffness[n] * place - liquid.pitch_weight[n] * q_error[CAR_PITCH])
+        )
+        to_tank = liquid.lambda_1[n] * (rate - own / inertia)
+        for i in range(COORDINATES):
+            right[i] += to_tank * model.wagon.tank_row[i]
+        right[CAR_PITCH] += liquid.lambda_02[n] * rate + implicit * liquid.pitch_weight[n] * place - arm * own / inertia
+        size = max(size, abs(rate))
+    return size
+
+
+@inner_kernel
+def _error(model, scratch, work, start, middle, end, locked, step):
+    """Error of the step over the allowed one, filtered by `(1 - d J)^-1` so that stiff parts do not rule it."""
+    control, wagon = model.control, model.wagon
+    implicit = DIAGONAL * step
+    q_error, v_error, right = scratch.q_error, scratch.v_error, scratch.right
+    _difference(start.v, middle.v, end.v, step, q_error)
+    _difference(start.a, middle.a, end.a, step, v_error)
+    for i in range(COORDINATES):
+        total = 0.0
+        for j in range(COORDINATES):
+            total += wagon.mass[i, j] * v_error[j] - implicit * wagon.stiffness[i, j] * q_error[j]
+        right[i] = total
+    slosh = _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right)
+    _rail_error(model, scratch, work, start, middle, end, step, implicit, scratch.free)
+    for i in range(WHEELS):
+        scratch.load_gap[i] = scratch.normal_slope[i] * (scratch.free[i] - q_error[WHEEL_HEAVE + i])
+    for i in range(WHEELS):
+        scratch.load_change[i] = 0.0
+        for j in range(WHEELS):
+            scratch.load_change[i] += implicit * scratch.contact_inverse[i, j] * scratch.load_gap[j]
+        if locked[i]:
+            right[WHEEL_SPIN + i] = 0.0
+    add_load_change(model, scratch, locked, right, scratch.load_change)
+    solve_dense(scratch.jacobian, scratch.pivots, right)
+    size = slosh / control.slosh_scale
+    for i in range(COORDINATES):
+        place = q_error[i] + implicit * right[i]
+        size = max(size, abs(right[i]) / control.speed_scale[i], abs(place) / control.place_scale[i])
+    return size / control.local_tolerance

@@ -1,0 +1,1 @@
+"""The tank: cross-section geometry, the load at rest and the slosh coefficients."""

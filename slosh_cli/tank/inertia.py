@@ -1,0 +1,154 @@
+"""What of an ideal liquid moves rigidly with its tank: added mass, and pitch inertia under a lid.
+
+Both are sums over the odd harmonics of `x = -sum 4/(L k^2) cos(k (x + L/2))`, k = n pi / L: one plane problem
+`(d_yy + d_zz - k^2) phi = 0` over the wetted section each. The terms of highest k are summed from their limit
+for short waves, where only the neighbourhood of the boundary counts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from slosh_cli.tank.eigenproblem import HalfSectionElements, factorised
+from slosh_cli.tank.errors import TankError
+from slosh_cli.tank.load import LoadedTank, frozen_load
+from slosh_cli.tank.mesh import Floats
+from slosh_cli.tank.section import liquid_depth, section_of
+from slosh_cli.tank.triangulation import triangulate
+from slosh_cli.tank.wetted import HalfSection, half_section
+
+TOLERANCE = 1e-5
+"""Change from one mesh to the next, as a share of the frozen load's value, below which refining ends."""
+
+_SHORT = 6.0  # wavenumber times the section's narrowest measure beyond which waves are short
+_MOST_SAMPLES = 40
+_MOST_UNKNOWNS = 150_000
+
+
+def added_mass(tank: LoadedTank) -> float:
+    """Mass in kg of the liquid that follows a sudden longitudinal push of the tank (phi = 0 on the surface).
+
+    With the slosh masses `lambda_1^2/mu` of all modes, transverse overtones included, it makes up the whole:
+    m_0 = m_l - (8 rho / L) sum (1/k^2) integral(chi) dA,  chi = 1 on the surface, d chi/dn = 0 on the wall.
+    Raises TankError where the section cannot be represented or the value does not settle.
+    """
+    half, length, mass = _half_of(tank), tank.length, frozen_load(tank).mass
+    scale, width = 8.0 * tank.liquid.density / length, 2.0 * half.half_width
+
+    def free_share(elements: HalfSectionElements, wavenumbers: Floats) -> float:
+        integrals = np.array([_below_open_surface(elements, float(k)) for k in wavenumbers])
+        return scale * _sum_over_harmonics(integrals * wavenumbers, wavenumbers, length, width, 3)
+
+    return mass - _settled(half, length, free_share, mass, held_surface=True)
+
+
+def stokes_joukowski_inertia(tank: LoadedTank) -> float:
+    """Pitch inertia in kg m^2 of the liquid about its own centre if a lid held its surface flat.
+
+    An ideal liquid does not turn with its tank as a frozen one does:
+    J = J_l - rho sum 32/(L k^4) (A - boundary integral of psi n_z),  d psi/dn = n_z on the whole boundary.
+    About another axis add the liquid's mass times the distance squared, as for a rigid body. Raises TankError
+    where the section cannot be represented or the value does not settle.
+    """
+    half, length, frozen = _half_of(tank), tank.length, frozen_load(tank).pitch_inertia
+    scale, area = 32.0 * tank.liquid.density / length, 2.0 * half.area
+
+    def slip(elements: HalfSectionElements, wavenumbers: Floats) -> float:
+        integrals = np.array([_slip_below_lid(elements, float(k)) for k in wavenumbers])
+        return scale * _sum_over_harmonics(integrals, wavenumbers, length, area, 4)
+
+    return frozen - _settled(half, length, slip, frozen)
+
+
+def free_masses(tank: LoadedTank, longitudinal: int, transverse: int) -> Floats:
+    """Slosh masses `lambda_1^2/mu` in kg of the modes n = 1, 3, ... and their overtones, (longitudinal, transverse).
+
+    The first column are the modes of the coefficients; the others, with nodes across the surface, take
+    part because their mean over the width is not zero unless the tank is rectangular.
+    """
+    half, length = _half_of(tank), tank.length
+    wavenumbers = (2.0 * np.arange(longitudinal) + 1.0) * math.pi / length
+    elements = HalfSectionElements(triangulate(half, float(wavenumbers[-1])).refined().refined())
+    masses = np.empty((longitudinal, transverse))
+    for row, wavenumber in zip(masses, wavenumbers, strict=True):
+        solved = elements.modes(float(wavenumber), transverse)
+        over_surface = 2.0 * (elements.surface_of @ solved.potential)
+        row[:] = tank.liquid.density * (2.0 / wavenumber**2) ** 2 * solved.kappa * over_surface**2 / length
+    return masses
+
+
+def _half_of(tank: LoadedTank) -> HalfSection:
+    return half_section(section_of(tank), liquid_depth(tank))
+
+
+def _sum_over_harmonics(values: Floats, wavenumbers: Floats, length: float, limit: float, power: int) -> float:
+    """Sum of value(k) / k^power over the odd harmonics of the length, all of them.
+
+    `values` at increasing `wavenumbers` (1/m, from the first harmonic on) tend to `limit` + const / k.
+    """
+    from scipy.interpolate import CubicSpline
+    from scipy.special import zeta
+
+    unit, last = math.pi / length, float(wavenumbers[-1])
+    second = (float(values[-1]) - limit) * last
+    numbers = np.arange(1.0, round(last / unit) + 1, 2.0)
+    harmonics = numbers * unit
+    if len(values) < len(numbers):
+        values = CubicSpline(np.log(wavenumbers), values)(np.log(harmonics))
+    beyond = [(2.0 * unit) ** -p * float(zeta(p, numbers[-1] / 2.0 + 1.0)) for p in (power, power + 1)]
+    return float((values / harmonics**power).sum()) + limit * beyond[0] + second * beyond[1]
+
+
+def _sampled_wavenumbers(half: HalfSection, length: float) -> Floats:
+    """Harmonics up to where waves are short against the section; a selection of them where they are many."""
+    narrowest = min(half.depth, half.half_width, half.area / half.depth)
+    count = max(1, math.ceil((_SHORT / narrowest * length / math.pi + 1.0) / 2.0))
+    chosen = np.unique(np.round(np.geomspace(1.0, 2.0 * count, min(count, _MOST_SAMPLES)) / 2.0 - 0.5))
+    return np.asarray((2.0 * chosen + 1.0) * math.pi / length, dtype=np.float64)
+
+
+def _settled(
+    half: HalfSection,
+    length: float,
+    value_on: Callable[[HalfSectionElements, Floats], float],
+    whole: float,
+    held_surface: bool = False,
+) -> float:
+    """The value on a mesh so fine that its last refinement changed it by less than TOLERANCE of `whole`."""
+    wavenumbers = _sampled_wavenumbers(half, length)
+    mesh = triangulate(half, float(wavenumbers[-1]), held_surface)
+    elements = HalfSectionElements(mesh)
+    value, change = value_on(elements, wavenumbers), math.inf
+    while change > TOLERANCE * whole:
+        if elements.size > _MOST_UNKNOWNS:
+            raise TankError(
+                f"the value must settle to {TOLERANCE:g} of the frozen load's, but still changes by "
+                f"{change / whole:.1e} with {elements.size} unknowns"
+            )
+        mesh = mesh.refined()
+        elements = HalfSectionElements(mesh)
+        previous, value = value, value_on(elements, wavenumbers)
+        change = abs(value - previous)
+    return value
+
+
+def _below_open_surface(elements: HalfSectionElements, wavenumber: float) -> float:
+    """Integral over the section of the field that is 1 on the surface and has no flux through the wall."""
+    operator = (elements.stiffness + wavenumber**2 * elements.mass).tocsc()
+    field = np.zeros(elements.size)
+    field[elements.surface_unknowns] = 1.0
+    inner = np.setdiff1d(np.arange(elements.size), elements.surface_unknowns)
+    load = -(operator @ field)[inner]
+    field[inner] = factorised(operator[inner][:, inner])(load)
+    return 2.0 * float(elements.area_of @ field)
+
+
+def _slip_below_lid(elements: HalfSectionElements, wavenumber: float) -> float:
+    """Area of the section less the boundary integral of psi n_z; d psi/dn = n_z on the whole boundary."""
+    operator = (elements.stiffness + wavenumber**2 * elements.mass).tocsc()
+    field = factorised(operator)(elements.area_of_slope)
+    area = float(elements.area_of.sum())
+    return 2.0 * (area - float(elements.area_of_slope @ field))

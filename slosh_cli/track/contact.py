@@ -1,0 +1,88 @@
+"""Wheel-rail forces: Hertz normal contact and Polach's creep force with falling friction.
+
+O. Polach, "Creep forces in simulations of traction vehicles running on adhesion limit", Wear 258 (2005) 992-1000.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from slosh_cli.compiled import kernel
+from slosh_cli.scenario import Contact
+from slosh_cli.track.hertz import hertz_contact
+
+CREEPAGE_SPEED_FLOOR = 0.05
+"""Creepage is slip over the larger of train speed and this, m/s (model section 7)."""
+
+
+class ContactModel(NamedTuple):
+    """Constants of one wheel-rail contact, SI units.
+
+    `stiffness` C_H in N/m^1.5; `creep_factor` is `G pi c11 (a b / N^(2/3)) / 4` in N^(1/3), so that
+    `eps = creep_factor |creepage| / (mu N^(1/3))`; the rest are Polach's friction parameters.
+    """
+
+    stiffness: float
+    creep_factor: float
+    friction: float
+    friction_limit_ratio: float
+    friction_decay: float
+    adhesion_reduction: float
+    slip_reduction: float
+
+
+def contact_model(contact: Contact, wheel_radius: float) -> ContactModel:
+    """Constants of the contact of a wheel of `wheel_radius` (m) under the scenario's materials and adhesion."""
+    hertz = hertz_contact(wheel_radius, contact.rail_crown_radius, contact.youngs_modulus, contact.poisson_ratio)
+    shear_modulus = contact.youngs_modulus / (2 * (1 + contact.poisson_ratio))
+    adhesion = contact.adhesion
+    return ContactModel(
+        stiffness=hertz.stiffness if contact.stiffness is None else contact.stiffness,
+        creep_factor=0.25 * math.pi * shear_modulus * contact.kalker_c11 * hertz.ellipse_area_factor,
+        friction=adhesion.mu0,
+        friction_limit_ratio=adhesion.A,
+        friction_decay=adhesion.B,
+        adhesion_reduction=adhesion.kA,
+        slip_reduction=adhesion.kS,
+    )
+
+
+@kernel
+def normal_force(contact, approach):
+    """Normal force (N) and its derivative (N/m) for an approach (m) of wheel and rail; zero when apart."""
+    closed = max(approach, 0.0)
+    root = math.sqrt(closed)
+    return contact.stiffness * closed * root, 1.5 * contact.stiffness * root
+
+
+@kernel
+def creep_force(contact, normal, slip, speed):
+    """Longitudinal creep force on the wheel, opposing `slip` (m/s, train speed less circumferential speed).
+
+    Returns the force (N, positive rearwards for positive slip) and its derivatives with respect to the normal
+    force, the slip and the train speed. `|creepage| = |slip| / max(|speed|, floor)`; model section 7.
+    """
+    if normal <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    direction = 1.0 if slip >= 0.0 else -1.0
+    rolling = max(abs(speed), CREEPAGE_SPEED_FLOOR)
+    falling = contact.friction * (1.0 - contact.friction_limit_ratio) * math.exp(-contact.friction_decay * abs(slip))
+    mu = falling + contact.friction * contact.friction_limit_ratio
+    mu_slope = -contact.friction_decay * falling
+    eps_per_slip = contact.creep_factor / (mu * rolling * normal ** (1.0 / 3.0))
+    eps = eps_per_slip * abs(slip)
+    adhesion = contact.adhesion_reduction * eps
+    sliding = contact.slip_reduction * eps
+    bracket = adhesion / (1.0 + adhesion * adhesion) + math.atan(sliding)
+    bracket_slope = contact.adhesion_reduction * (1.0 - adhesion * adhesion) / (
+        1.0 + adhesion * adhesion
+    ) ** 2 + contact.slip_reduction / (1.0 + sliding * sliding)
+    scale = 2.0 / math.pi
+    force = scale * mu * normal * bracket
+    by_normal = scale * mu * (bracket - bracket_slope * eps / 3.0)
+    by_slip = scale * normal * (mu_slope * bracket + bracket_slope * (mu * eps_per_slip - eps * mu_slope))
+    by_speed = 0.0
+    if abs(speed) > CREEPAGE_SPEED_FLOOR:
+        by_speed = -scale * mu * normal * bracket_slope * eps / speed
+    return direction * force, direction * by_normal, by_slip, direction * by_speed

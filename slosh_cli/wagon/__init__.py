@@ -1,0 +1,1 @@
+"""The wagon: 15 coordinates, one Lagrangian, constant matrices."""

@@ -1,0 +1,93 @@
+"""Every command and every option says what it is for, and `--help` is quick."""
+
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import typer
+from stand_ins import Slosh
+
+from slosh_cli import __version__
+from slosh_cli.cli.app import app
+from slosh_cli.cli.exit_codes import ExitCode
+
+HEAVY = ["numba", "scipy", "pandas", "matplotlib", "pint", "h5py", "numpy", "yaml", "rich"]
+
+
+def _tree(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    yield path, command
+    for name, child in getattr(command, "commands", {}).items():
+        yield from _tree(child, (*path, name))
+
+
+COMMANDS = dict(_tree(typer.main.get_command(app)))
+
+
+def test_the_commands_are_those_of_the_contract() -> None:
+    assert {path[0] for path in COMMANDS if path} >= {"run", "check", "schema", "init", "plot"}
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_every_command_and_parameter_is_documented(path: tuple[str, ...]) -> None:
+    command = COMMANDS[path]
+    assert command.help, path
+    for parameter in command.params:
+        assert parameter.help, (path, parameter.name)
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_every_command_shows_its_help(slosh: Slosh, path: tuple[str, ...]) -> None:
+    outcome = slosh(*path, "--help")
+    assert outcome.code == ExitCode.DONE
+    assert outcome.out.startswith(" ".join(["Usage: slosh", *path]))
+    assert outcome.err == ""
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_the_first_line_of_a_help_fits_the_list_of_commands(slosh: Slosh, path: tuple[str, ...]) -> None:
+    first = COMMANDS[path].help.splitlines()[0]
+    assert len(first) <= 68
+    assert first.endswith(".")
+
+
+def test_without_a_command_slosh_shows_its_help(slosh: Slosh) -> None:
+    outcome = slosh()
+    assert outcome.code == ExitCode.DONE
+    assert "Commands:" in outcome.out
+
+
+def test_the_help_names_the_exit_codes(slosh: Slosh) -> None:
+    text = " ".join(slosh("--help").out.split())
+    assert "2 the input is wrong, 3 a run ended without an answer" in text
+
+
+def test_version(slosh: Slosh) -> None:
+    assert slosh("--version").out == f"slosh {__version__}\n"
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["--version"]], ids=" ".join)
+def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
+    code = (
+        "import sys; from slosh_cli.cli import main; main(sys.argv[2:]); "
+        "print(*set(sys.argv[1].split(',')) & set(sys.modules), file=sys.stderr)"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code, ",".join(HEAVY), *arguments], check=True, capture_output=True, text=True
+    )
+    assert run.stderr.split() == []
+
+
+def test_help_is_as_quick_as_the_library_it_needs() -> None:
+    def best_of_five(code: str) -> float:
+        times = []
+        for _ in range(5):
+            start = time.perf_counter()
+            subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+            times.append(time.perf_counter() - start)
+        return min(times)
+
+    ours = best_of_five("from slosh_cli.cli import main; main(['--help'])")
+    assert ours < 2.0 * best_of_five("import typer")

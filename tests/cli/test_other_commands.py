@@ -1,0 +1,123 @@
+"""`slosh init`, `check`, `schema` and `plot`."""
+
+import json
+from pathlib import Path
+
+import pytest
+from stand_ins import PAPER, Slosh, Solver
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.scenario import Scenario, load_any_scenario, load_scenario, packaged_scenarios
+
+
+def test_init_writes_a_scenario_that_is_sound_and_commented(slosh: Slosh, tmp_path: Path) -> None:
+    outcome = slosh("init")
+    assert outcome.code == ExitCode.DONE
+    text = (tmp_path / "paper_80.yaml").read_text(encoding="utf-8")
+    assert "# " in text
+    assert text == PAPER.read_text(encoding="utf-8")
+    assert slosh("check", "paper_80.yaml").code == ExitCode.DONE
+
+
+@pytest.mark.parametrize("name", packaged_scenarios())
+def test_init_writes_any_packaged_scenario(slosh: Slosh, tmp_path: Path, name: str) -> None:
+    outcome = slosh("init", name, "-o", "mine.yaml")
+    assert outcome.code == ExitCode.DONE
+    a_stop = isinstance(load_any_scenario("mine.yaml"), Scenario)
+    assert ("slosh run mine.yaml" in outcome.out) is a_stop
+    assert (tmp_path / "mine.yaml").read_bytes() == packaged_scenarios()[name].read_bytes()
+    assert slosh("check", "mine.yaml").code == ExitCode.DONE
+
+
+def test_init_never_overwrites(slosh: Slosh, tmp_path: Path) -> None:
+    (tmp_path / "paper_80.yaml").write_text("mine")
+    outcome = slosh("init")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "exists already" in outcome.err
+    assert (tmp_path / "paper_80.yaml").read_text() == "mine"
+
+
+def test_init_lists_the_packaged_scenarios(slosh: Slosh, tmp_path: Path) -> None:
+    assert slosh("init", "--list").out.split() == list(packaged_scenarios())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_init_guesses_the_name_that_was_meant(slosh: Slosh, tmp_path: Path) -> None:
+    outcome = slosh("init", "paper_08")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "paper-80-liquid" in outcome.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_init_into_a_missing_folder_is_the_users_matter(slosh: Slosh) -> None:
+    outcome = slosh("init", "-o", "nowhere/mine.yaml")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "cannot write" in outcome.err
+
+
+def test_check_of_a_sound_scenario(slosh: Slosh) -> None:
+    outcome = slosh("check", PAPER)
+    assert outcome.code == ExitCode.DONE
+    assert "paper-80-liquid" in outcome.out
+    answer = json.loads(slosh("check", PAPER, "--json").out)
+    assert answer["valid"] is True
+    assert answer["name"] == "paper-80-liquid"
+
+
+def test_check_names_every_mistake_with_its_line(slosh: Slosh, tmp_path: Path) -> None:
+    lines = PAPER.read_text(encoding="utf-8").splitlines()
+    first = next(n for n, line in enumerate(lines) if "torque: 5 kN m" in line)
+    second = next(n for n, line in enumerate(lines) if "pivot_spacing: 12 m" in line)
+    lines[first] = lines[first].replace("5 kN m", "5")
+    lines[second] = lines[second].replace("pivot_spacing", "pivot_spacin")
+    (tmp_path / "bad.yaml").write_text("\n".join(lines), encoding="utf-8")
+    outcome = slosh("check", "bad.yaml")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert f"bad.yaml:{first + 1}: braking.torque" in outcome.err
+    assert f"bad.yaml:{second + 1}: wagon.pivot_spacin" in outcome.err
+    error = json.loads(slosh("check", "bad.yaml", "--json").out)["error"]
+    assert error["code"] == "scenario"
+    assert error["where"].startswith("bad.yaml:")
+
+
+def test_check_takes_changed_values(slosh: Slosh) -> None:
+    assert slosh("check", PAPER, "--set", "tank.fill=0.7").code == ExitCode.DONE
+    assert slosh("check", PAPER, "--set", "tank.fill=1.7").code == ExitCode.BAD_INPUT
+
+
+def test_schema_is_a_json_schema_of_the_scenario(slosh: Slosh) -> None:
+    outcome = slosh("schema")
+    schema = json.loads(outcome.out)
+    assert outcome.code == ExitCode.DONE
+    assert {"wagon", "tank", "track", "contact", "braking"} <= set(schema["properties"])
+
+
+def test_plot_draws_beside_the_history(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    slosh("run", PAPER, "-o", "here", "--no-figures")
+    outcome = slosh("plot", "here/run.h5")
+    assert outcome.code == ExitCode.DONE
+    drawn = {Path(line) for line in outcome.out.split()}
+    assert drawn == {Path("here") / file.name for file in (tmp_path / "here").iterdir()} - {
+        Path("here/run.h5"),
+        Path("here/summary.csv"),
+    }
+    assert len(drawn) == 8
+
+
+def test_plot_draws_where_the_user_wants(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    slosh("run", PAPER, "-o", "here", "--no-figures")
+    assert slosh("plot", "here/run.h5", "-o", "there").code == ExitCode.DONE
+    assert len(list((tmp_path / "there").iterdir())) == 8
+    assert len(list((tmp_path / "here").iterdir())) == 2
+
+
+@pytest.mark.parametrize("file", ["nowhere.h5", PAPER, "."])
+def test_plot_of_something_else_is_the_users_matter(slosh: Slosh, tmp_path: Path, file: object) -> None:
+    outcome = slosh("plot", file)
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert str(file) in outcome.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_packaged_default_is_the_papers_wagon() -> None:
+    assert load_scenario(packaged_scenarios()["paper-80-liquid"]).name == "paper-80-liquid"

@@ -1,0 +1,202 @@
+"""`slosh run`: files, summary, JSON, exit codes."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pandas as pd
+import pytest
+from plausible import plausible_run, unfinished_run
+from stand_ins import PAPER, Slosh, Solver
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.report import figures
+
+KEYS = [
+    "name",
+    "status",
+    "braking_distance_m",
+    "braking_time_s",
+    "initial_speed_m_s",
+    "torque_N_m",
+    "liquid_model",
+    "max_surface_m",
+    "surface_limit_m",
+    "min_wheel_load_N",
+    "max_wheel_load_N",
+    "max_wheel_unloading",
+    "locked_time_s",
+    "energy_residual",
+    "steps",
+    "rejected_steps",
+    "solve_seconds",
+    "warnings",
+    "files",
+]
+
+
+def strict_json(text: str) -> Any:
+    """One JSON object and nothing else; NaN and infinity, which JSON does not know, are refused."""
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def names(folder: Path) -> set[str]:
+    return {file.name for file in folder.iterdir()}
+
+
+DRAWN = {f"{name}.{kind}" for name in figures.FIGURES for kind in figures.FORMATS}
+
+
+def test_files_lie_in_the_folder_named_after_the_scenario(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    assert slosh("run", PAPER).code == ExitCode.DONE
+    assert names(tmp_path / "outputs" / "paper-80-liquid") == {"run.h5", "summary.csv", *DRAWN}
+
+
+def test_files_lie_where_the_user_wants_them(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    assert slosh("run", PAPER, "-o", "a/b", "--no-figures").code == ExitCode.DONE
+    assert names(tmp_path / "a" / "b") == {"run.h5", "summary.csv"}
+    assert pd.read_csv(tmp_path / "a/b/summary.csv")["name"][0] == "paper-80-liquid"
+
+
+def test_values_can_be_changed_on_the_command_line(slosh: Slosh, solver: Solver) -> None:
+    outcome = slosh("run", PAPER, "--no-figures", "--set", "braking.torque=12 kN m", "--set", "tank.liquid.model=rigid")
+    assert outcome.code == ExitCode.DONE
+    assert solver.scenarios[0].braking.torque == 12e3
+    assert solver.scenarios[0].tank.liquid.model == "rigid"
+
+
+def test_a_wrong_value_on_the_command_line_is_the_users_matter(slosh: Slosh, solver: Solver) -> None:
+    outcome = slosh("run", PAPER, "--set", "braking.torque=12 m")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "braking.torque" in outcome.err
+    assert solver.scenarios == []
+
+
+def test_the_summary_shows_the_answer_and_the_way_to_it(slosh: Slosh, solver: Solver) -> None:
+    outcome = slosh("run", PAPER, "--no-figures")
+    result = plausible_run(solver.scenarios[0])
+    text = " ".join(outcome.out.split())
+    assert f"braking distance {result.braking_distance_m:.2f} m" in text
+    assert f"braking time {result.braking_time_s:.2f} s" in text
+    assert "812 accepted, 23 rejected" in text
+    assert "505 microseconds per step" in text
+    assert f"1 93.0 {result.min_wheel_load_N[0] / 1e3:.1f} {result.max_wheel_load_N[0] / 1e3:.1f}" in text
+    assert f"warning: {result.warnings[0]}" in text
+    assert str(Path("outputs/paper-80-liquid/run.h5")) in text
+    assert outcome.err == ""
+
+
+def test_a_rigid_load_shows_no_surface(slosh: Slosh, solver: Solver) -> None:
+    outcome = slosh("run", PAPER, "--no-figures", "--set", "tank.liquid.model=rigid")
+    assert "surface" not in outcome.out
+
+
+def test_json_is_one_object_with_the_keys_of_the_contract(slosh: Slosh, solver: Solver) -> None:
+    outcome = slosh("run", PAPER, "--json")
+    answer = strict_json(outcome.out)
+    assert list(answer) == KEYS
+    assert answer["status"] == "stopped"
+    assert answer["braking_distance_m"] == plausible_run(solver.scenarios[0]).braking_distance_m
+    files = answer["files"]
+    assert all(Path(file).is_file() for file in [files["history"], files["summary"], *files["figures"]])
+    assert {Path(file).name for file in files["figures"]} == DRAWN
+    assert f"warning: {answer['warnings'][0]}" in outcome.err
+
+
+def test_json_knows_no_nan_and_takes_numpy_numbers(slosh: Slosh, solver: Solver) -> None:
+    solver.answer = lambda scenario: replace(
+        plausible_run(scenario),
+        energy_residual=np.float64("nan"),
+        max_surface_m=float("inf"),
+        steps=np.int64(7),
+        min_wheel_load_N=(np.float64(1.5), 2.0, 3.0, 4.0),
+    )
+    answer = strict_json(slosh("run", PAPER, "--json", "--no-figures").out)
+    assert answer["energy_residual"] is None
+    assert answer["max_surface_m"] is None
+    assert answer["steps"] == 7
+    assert answer["min_wheel_load_N"] == [1.5, 2.0, 3.0, 4.0]
+
+
+def test_a_run_without_an_answer_keeps_its_files_and_says_why(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    solver.answer = unfinished_run
+    outcome = slosh("run", PAPER, "-o", "here")
+    assert outcome.code == ExitCode.NO_ANSWER == 3
+    text = " ".join(outcome.out.split())
+    assert "did not stop: time-limit. still at 3.1 m/s after 600 s" in text
+    assert "solver.time_limit" in text
+    assert "braking distance -" in text
+    assert {"run.h5", "summary.csv"} <= names(tmp_path / "here")
+
+
+def test_json_of_a_run_without_an_answer(slosh: Slosh, solver: Solver) -> None:
+    solver.answer = unfinished_run
+    outcome = slosh("run", PAPER, "--json", "--no-figures")
+    assert outcome.code == ExitCode.NO_ANSWER
+    answer = strict_json(outcome.out)
+    assert answer["status"] == "time-limit"
+    assert answer["braking_distance_m"] is None
+    assert "still at 3.1 m/s after 600 s" in answer["warnings"]
+    assert "time-limit: still at 3.1 m/s after 600 s" in outcome.err
+
+
+def test_a_second_run_replaces_the_first_whole(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    slosh("run", PAPER, "-o", "here")
+    (tmp_path / "here" / "notes.txt").write_text("mine")
+    slosh("run", PAPER, "-o", "here", "--set", "tank.liquid.model=rigid")
+    assert names(tmp_path / "here") == {"notes.txt", "run.h5", "summary.csv", *DRAWN} - {
+        "slosh.png",
+        "slosh.svg",
+    }
+
+
+@pytest.mark.parametrize("writer", ["write_history", "write_summary", "draw_run"])
+def test_a_run_that_cannot_be_written_leaves_the_earlier_one(
+    slosh: Slosh, solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str
+) -> None:
+    slosh("run", PAPER, "-o", "here")
+    before = {file.name: file.read_bytes() for file in (tmp_path / "here").iterdir()}
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    home = {"write_history": "results.hdf5", "write_summary": "results.tables", "draw_run": "report.figures"}
+    monkeypatch.setattr(f"slosh_cli.{home[writer]}.{writer}", fail)
+    outcome = slosh("run", PAPER, "-o", "here")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "No space left on device" in outcome.err
+    assert {file.name: file.read_bytes() for file in (tmp_path / "here").iterdir()} == before
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_run(
+    slosh: Slosh, solver: Solver, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("")
+    outcome = slosh("run", PAPER, "-o", "file/here")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "is not a folder" in outcome.err
+    assert solver.scenarios == []
+
+
+def test_the_history_holds_the_scenario_as_it_was_run(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    slosh("run", PAPER, "-o", "here", "--no-figures", "--set", "braking.torque=7 kN m")
+    with h5py.File(tmp_path / "here" / "run.h5") as file:
+        text = file["scenario"][()].decode()
+    (tmp_path / "again.yaml").write_text(text)
+    assert slosh("run", "again.yaml", "--no-figures").code == ExitCode.DONE
+    assert solver.scenarios[1] == solver.scenarios[0]
+
+
+def test_the_first_run_announces_the_compilation(slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda: False)
+    outcome = slosh("run", PAPER, "--no-figures", "--json")
+    assert outcome.err.startswith("Compiling the solver, once")
+    strict_json(outcome.out)

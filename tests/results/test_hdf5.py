@@ -1,0 +1,169 @@
+"""The history file: read back the same, by this program and by others; never half written."""
+
+import pickle
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from slosh_cli import __version__, load_scenario
+from slosh_cli.results import hdf5
+from slosh_cli.results.channels import channel
+from slosh_cli.results.files import FileError
+from slosh_cli.results.hdf5 import read_history, write_history
+from slosh_cli.results.result import Result
+
+
+@pytest.fixture
+def file(result: Result, tmp_path: Path) -> Path:
+    path = tmp_path / "run.h5"
+    write_history(result, path)
+    return path
+
+
+def test_what_was_written_is_read_back(result: Result, file: Path) -> None:
+    history = read_history(file)
+    np.testing.assert_array_equal(history.time, result.time)
+    assert set(history.channels) == set(result.channels)
+    for name, values in result.channels.items():
+        np.testing.assert_array_equal(history.channels[name], values, err_msg=name)
+    for name in (
+        "name", "status", "reason", "warnings", "initial_speed_m_s", "torque_N_m", "onset_s", "liquid_model",
+        "surface_limit_m", "braking_distance_m", "static_wheel_load_N",
+    ):  # fmt: skip
+        assert getattr(history, name) == getattr(result, name), name
+
+
+def test_a_run_without_an_answer_is_read_back_as_such(unfinished: Result, tmp_path: Path) -> None:
+    write_history(unfinished, tmp_path / "run.h5")
+    history = read_history(tmp_path / "run.h5")
+    assert history.braking_distance_m is None
+    assert history.status == "time-limit"
+    assert history.reason == unfinished.reason
+
+
+def test_several_warnings_stay_several(result: Result, tmp_path: Path) -> None:
+    write_history(replace(result, warnings=("one\nin two lines", "another")), tmp_path / "run.h5")
+    assert read_history(tmp_path / "run.h5").warnings == ("one in two lines", "another")
+
+
+def test_plain_h5py_finds_channels_with_units(result: Result, file: Path) -> None:
+    with h5py.File(file, "r") as plain:
+        assert set(plain) == {"time", "scenario", *result.channels}
+        for name in result.channels:
+            dataset = plain[name]
+            assert dataset.dtype == np.dtype("<f8")
+            assert dataset.shape == result.time.shape
+            assert dataset.attrs["units"] == channel(name).unit
+            assert dataset.attrs["long_name"] == channel(name).long_name
+            assert dataset.dims[0][0] == plain["time"]
+        assert plain["time"].attrs["NAME"] == b"time"
+        assert plain["time"].attrs["units"] == "s"
+
+
+def test_the_scenario_in_the_file_is_the_scenario_of_the_run(
+    result: Result, file: Path, tmp_path: Path
+) -> None:
+    again = tmp_path / "again.yaml"
+    again.write_text(read_history(file).scenario_text, encoding="utf-8")
+    assert load_scenario(again) == result.scenario
+
+
+def test_root_attributes_tell_the_circumstances(result: Result, file: Path) -> None:
+    with h5py.File(file, "r") as plain:
+        found: dict[str, Any] = dict(plain.attrs)
+    assert found["format_version"] == 1
+    assert found["program_version"] == __version__
+    assert found["status"] == "stopped"
+    assert abs(datetime.fromisoformat(found["created"]) - datetime.now(UTC)) < timedelta(minutes=5)
+    assert {"python_version", "numpy_version", "numba_version", "platform"} <= set(found)
+    assert found["energy_brake_J"] == result.energy["brake"]
+    assert found["energy_residual"] == result.energy_residual
+    assert found["work_events"] == 3
+    assert found["steps"] == result.steps
+    np.testing.assert_array_equal(found["min_wheel_load_N"], result.min_wheel_load_N)
+
+
+def test_summary_values_are_in_the_file(result: Result, file: Path) -> None:
+    found = read_history(file).attributes
+    for key, value in result.summary().items():
+        if key != "warnings":
+            np.testing.assert_array_equal(found[key], value, err_msg=key)
+
+
+def test_a_history_survives_pickling(file: Path) -> None:
+    history = read_history(file)
+    assert pickle.loads(pickle.dumps(history)).attributes["created"] == history.attributes["created"]
+
+
+def test_frame_of_a_history(result: Result, file: Path) -> None:
+    frame = read_history(file).to_frame()
+    np.testing.assert_array_equal(frame["car_pitch"].to_numpy(), result.channels["car_pitch"])
+    np.testing.assert_array_equal(frame.index.to_numpy(), result.time)
+
+
+def test_a_writer_that_fails_midway_leaves_the_old_file(
+    result: Result, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = file.read_bytes()
+
+    def fail(_: str) -> None:
+        raise RuntimeError("halfway")
+
+    monkeypatch.setattr(hdf5, "channel", fail)
+    with pytest.raises(RuntimeError, match="halfway"):
+        write_history(result, file)
+    assert file.read_bytes() == before
+    assert list(file.parent.iterdir()) == [file]
+
+
+def _edit(change: Callable[[h5py.File], None]) -> Callable[[Path], None]:
+    def spoil(path: Path) -> None:
+        with h5py.File(path, "r+") as file:
+            change(file)
+
+    return spoil
+
+
+def _replace_speed(file: h5py.File) -> None:
+    del file["speed"]
+    file["speed"] = np.zeros(3)
+
+
+SPOILED: dict[str, tuple[Callable[[Path], Any], str]] = {
+    "missing": (lambda path: path.unlink(), "does not exist"),
+    "empty": (lambda path: path.write_bytes(b""), "cannot read"),
+    "text": (lambda path: path.write_text("time,speed\n"), "cannot read"),
+    "cut short": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "cannot read"),
+    "another program's": (_edit(lambda file: file.attrs.pop("program")), "not the history of a slosh run"),
+    "another format": (_edit(lambda file: file.attrs.modify("format_version", 99)), "history format 99"),
+    "no time": (_edit(lambda file: file.pop("time")), "cannot read"),
+    "no scenario": (_edit(lambda file: file.pop("scenario")), "cannot read"),
+    "no status": (_edit(lambda file: file.attrs.pop("status")), "lacks the attributes status"),
+    "short channel": (_edit(_replace_speed), "speed is not as long"),
+}
+
+
+@pytest.mark.parametrize(("spoil", "message"), SPOILED.values(), ids=SPOILED)
+def test_a_bad_file_is_refused_in_clear_words(file: Path, spoil: Callable[[Path], Any], message: str) -> None:
+    spoil(file)
+    with pytest.raises(FileError, match=message) as refusal:
+        read_history(file)
+    assert refusal.value.where == str(file)
+    assert str(file) in str(refusal.value)
+
+
+def test_a_folder_is_refused_with_a_hint(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match=r"is a folder; give the history file in it, say .*run\.h5"):
+        read_history(tmp_path)
+
+
+def test_a_path_that_cannot_be_written_is_the_users_matter(result: Result, tmp_path: Path) -> None:
+    (tmp_path / "run.h5").mkdir()
+    with pytest.raises(FileError, match="cannot write"):
+        write_history(result, tmp_path / "run.h5")
