@@ -17,8 +17,8 @@ def check(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJ
 
     Every mistake is named with its line, all of them at once.
     """
-    from slosh_cli.cli.reading import read_any_scenario  # noqa: PLC0415  (--help does without)
-    from slosh_cli.scenario import Scenario  # noqa: PLC0415
+    from slosh_cli.cli.reading import read_any_scenario
+    from slosh_cli.scenario import Scenario
 
     scenario = read_any_scenario(scenario_file, overrides)
     kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"

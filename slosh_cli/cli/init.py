@@ -34,7 +34,7 @@ def init(
     names: Annotated[bool, typer.Option("--list", help="List the packaged scenarios and leave.")] = False,
 ) -> ExitCode:
     """Write a commented scenario to start from. Never overwrites a file."""
-    from slosh_cli.scenario import (  # noqa: PLC0415  (--help does without)
+    from slosh_cli.scenario import (
         Scenario,
         find_packaged,
         load_any_scenario,

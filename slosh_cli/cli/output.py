@@ -42,7 +42,7 @@ def say_json(value: Mapping[str, Any]) -> None:
 
 def show(*renderables: "RenderableType") -> None:
     """Print tables and other things of rich to stdout."""
-    from rich.console import Console  # noqa: PLC0415  (a plain `slosh --help` does without)
+    from rich.console import Console
 
     console = Console(highlight=False)
     with console.capture() as capture:

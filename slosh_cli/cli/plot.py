@@ -30,9 +30,9 @@ def plot(
 
     Each is written as PNG and as SVG.
     """
-    from slosh_cli.report.figures import draw_run  # noqa: PLC0415  (imports matplotlib)
-    from slosh_cli.results.files import staging  # noqa: PLC0415
-    from slosh_cli.results.hdf5 import read_history  # noqa: PLC0415  (imports h5py)
+    from slosh_cli.report.figures import draw_run
+    from slosh_cli.results.files import staging
+    from slosh_cli.results.hdf5 import read_history
 
     history = read_history(history_file)
     folder = output or history_file.parent

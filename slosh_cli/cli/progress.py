@@ -19,7 +19,7 @@ COMPILE_SECONDS: Final = 60
 
 def announce_compilation() -> None:
     """Say that this first run takes longer, when the time loop has not been compiled yet."""
-    from slosh_cli.compiled import is_cached  # noqa: PLC0415  (imports numba)
+    from slosh_cli.compiled import is_cached
 
     if not is_cached():
         note(f"Compiling the solver, once: about {COMPILE_SECONDS} s. Later runs start at once.")
@@ -58,8 +58,8 @@ class RunProgress:
 
 
 def _bar() -> "Progress":
-    from rich.console import Console  # noqa: PLC0415  (only slow runs need it)
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn  # noqa: PLC0415
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
     return Progress(
         TextColumn("{task.description}"),

@@ -16,7 +16,7 @@ def read_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario":
 
     Raises ScenarioError, which for a missing file names the packaged scenario that may have been meant.
     """
-    from slosh_cli.scenario import load_scenario  # noqa: PLC0415  (--help does without)
+    from slosh_cli.scenario import load_scenario
 
     _check_exists(path)
     return load_scenario(path, overrides or ())
@@ -24,7 +24,7 @@ def read_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario":
 
 def read_any_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario | TankScenario":
     """Load the scenario of a stop, or of a tank alone. Raises ScenarioError as `read_scenario` does."""
-    from slosh_cli.scenario import load_any_scenario  # noqa: PLC0415  (--help does without)
+    from slosh_cli.scenario import load_any_scenario
 
     _check_exists(path)
     return load_any_scenario(path, overrides or ())
@@ -32,7 +32,7 @@ def read_any_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario 
 
 def _check_exists(path: Path) -> None:
     """Name the packaged scenario that may have been meant by a file that does not exist."""
-    from slosh_cli.scenario import packaged_scenarios  # noqa: PLC0415  (--help does without)
+    from slosh_cli.scenario import packaged_scenarios
 
     if path.exists():
         return

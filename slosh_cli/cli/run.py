@@ -35,9 +35,9 @@ def run(
 
     The files of an earlier run in the same folder are replaced once the new ones are whole.
     """
-    from slosh_cli.cli.reading import read_scenario  # noqa: PLC0415  (--help does without all of these)
-    from slosh_cli.cli.summary import show_run  # noqa: PLC0415
-    from slosh_cli.results.result import Status  # noqa: PLC0415
+    from slosh_cli.cli.reading import read_scenario
+    from slosh_cli.cli.summary import show_run
+    from slosh_cli.results.result import Status
 
     scenario = read_scenario(scenario_file, overrides)
     folder = output or Path("outputs") / scenario.name
@@ -61,10 +61,10 @@ def write_run(result: "Result", folder: Path, *, figures: bool) -> dict[str, Any
 
     Files of an earlier run stay as they were until the new ones are whole.
     """
-    from slosh_cli.report.figures import FIGURES, FORMATS, draw_run  # noqa: PLC0415  (imports matplotlib)
-    from slosh_cli.results.files import staging  # noqa: PLC0415
-    from slosh_cli.results.hdf5 import write_history  # noqa: PLC0415  (imports h5py)
-    from slosh_cli.results.tables import write_summary  # noqa: PLC0415
+    from slosh_cli.report.figures import FIGURES, FORMATS, draw_run
+    from slosh_cli.results.files import staging
+    from slosh_cli.results.hdf5 import write_history
+    from slosh_cli.results.tables import write_summary
 
     earlier = [f"{name}.{suffix}" for name in FIGURES for suffix in FORMATS]
     with staging(folder, owned=earlier) as stage:
@@ -80,8 +80,8 @@ def write_run(result: "Result", folder: Path, *, figures: bool) -> dict[str, Any
 
 def _simulate(scenario: "Scenario") -> "Result":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
-    from slosh_cli.cli.progress import RunProgress, announce_compilation  # noqa: PLC0415
-    from slosh_cli.results.simulate import simulate  # noqa: PLC0415  (imports numba)
+    from slosh_cli.cli.progress import RunProgress, announce_compilation
+    from slosh_cli.results.simulate import simulate
 
     announce_compilation()
     cancel = threading.Event()
@@ -95,7 +95,7 @@ def _simulate(scenario: "Scenario") -> "Result":
 
 def _check_folder(folder: Path) -> None:
     """Refuse a folder that cannot be written before the run, not after it. Raises FileError."""
-    from slosh_cli.results.files import FileError  # noqa: PLC0415
+    from slosh_cli.results.files import FileError
 
     nearest = next(place for place in (folder, *folder.absolute().parents) if place.exists())
     if not nearest.is_dir():

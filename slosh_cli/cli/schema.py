@@ -16,7 +16,7 @@ def schema() -> ExitCode:
 
     An editor that knows it completes and checks scenarios while they are written.
     """
-    from slosh_cli.scenario import json_schema  # noqa: PLC0415  (--help does without)
+    from slosh_cli.scenario import json_schema
 
     say_json(json_schema())
     return ExitCode.DONE

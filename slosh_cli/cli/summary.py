@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def show_run(result: Result, files: Mapping[str, Any]) -> None:
     """Print what a run found, what it warns of and where its files lie, to stdout."""
-    from rich.text import Text  # noqa: PLC0415  (--help does without)
+    from rich.text import Text
 
     stopped = result.status is Status.STOPPED
     lines = [] if stopped else [f"The wagon did not stop: {result.status}. {result.reason}".rstrip()]
@@ -27,7 +27,7 @@ def show_run(result: Result, files: Mapping[str, Any]) -> None:
 
 
 def _facts(result: Result) -> "Table":
-    from rich.table import Table  # noqa: PLC0415  (--help does without)
+    from rich.table import Table
 
     table = Table.grid(padding=(0, 2))
     table.title, table.title_justify, table.title_style = _title(result), "left", "bold"
@@ -57,8 +57,8 @@ def fact_rows(result: Result) -> list[tuple[str, str]]:
 
 
 def _wheels(result: Result) -> "Table":
-    from rich import box  # noqa: PLC0415  (--help does without)
-    from rich.table import Table  # noqa: PLC0415
+    from rich import box
+    from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for column in ("wheel", "at rest / kN", "least / kN", "most / kN", "unloading / %", "locked / s"):

@@ -91,9 +91,7 @@ def contact_forces(record: Record) -> Figure:
 
 def speed_distance(record: Record) -> Figure:
     """Speed, acceleration of the car body and distance against time."""
-    figure, (speed, acceleration, distance) = _panels(
-        record, "Speed and distance", [1.25, 1.0, 1.0], height=7.4
-    )
+    figure, (speed, acceleration, distance) = _panels(record, "Speed and distance", [1.25, 1.0, 1.0], height=7.4)
     speed.plot(record.time, record.channels["speed"] * 3.6, color=INK)
     speed.set_ylabel("speed / km/h")
     speed.set_ylim(bottom=min(0.0, float(record.channels["speed"].min()) * 3.6))
@@ -169,17 +167,13 @@ FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
 
 def _panels(record: Record, title: str, shares: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
-    note = "\n".join(
-        line for text in caption(record).splitlines() for line in textwrap.wrap(text, CAPTION_WIDTH)
-    )
+    note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
     extra = 0.23 * lines
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)
     total = height + extra
     figure.text(0.018, 1.0 - 0.16 / total, title, fontsize=17, fontweight="bold", color=INK, va="top")
-    figure.text(
-        0.018, 1.0 - 0.52 / total, conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False
-    )
+    figure.text(0.018, 1.0 - 0.52 / total, conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
     if note:
         figure.text(
             0.018,
@@ -191,9 +185,7 @@ def _panels(record: Record, title: str, shares: Sequence[float], height: float) 
             linespacing=1.3,
             parse_math=False,
         )
-    figure.set_layout_engine(
-        "constrained", rect=(0.012, (extra + 0.1) / total, 0.98, 1.0 - (extra + 0.95) / total)
-    )
+    figure.set_layout_engine("constrained", rect=(0.012, (extra + 0.1) / total, 0.98, 1.0 - (extra + 0.95) / total))
     axes = figure.subplots(len(shares), 1, sharex=True, squeeze=False, height_ratios=list(shares))[:, 0]
     for panel in axes:
         panel.set_xlim(float(record.time[0]), max(float(record.time[-1]), 0.1) * 1.01)
@@ -214,9 +206,7 @@ def _mark_onset(record: Record, axes: Axes, *, named: bool = True) -> None:
 
 
 def _legend(axes: Axes, columns: int) -> None:
-    axes.legend(
-        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.6
-    )
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.6)
 
 
 def _draw_locked(record: Record, axes: Axes) -> None:
@@ -225,9 +215,7 @@ def _draw_locked(record: Record, axes: Axes) -> None:
     for i in WHEELS:
         stretches = locked_stretches(record, i)
         found = found or bool(stretches)
-        axes.broken_barh(
-            stretches, (i - 0.36, 0.72), facecolor=WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8
-        )
+        axes.broken_barh(stretches, (i - 0.36, 0.72), facecolor=WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8)
     axes.set_ylim(4.6, 0.4)
     axes.set_yticks(list(WHEELS))
     axes.set_ylabel("locked\nwheel")

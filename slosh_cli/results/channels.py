@@ -86,9 +86,7 @@ def _fixed_channels() -> tuple[Channel, ...]:
         for quantity, unit, meaning in _BOGIE
     )
     wheels = (
-        Channel(wheel(i, quantity), unit, meaning.format(i=i))
-        for i in WHEELS
-        for quantity, unit, meaning in _WHEEL
+        Channel(wheel(i, quantity), unit, meaning.format(i=i)) for i in WHEELS for quantity, unit, meaning in _WHEEL
     )
     return (*_WAGON, *bogies, *wheels, *_LIQUID, *_ENERGY)
 

@@ -105,7 +105,7 @@ def write_history(result: Result, path: Path) -> None:
 
     The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
     """
-    from slosh_cli.scenario import scenario_to_yaml  # noqa: PLC0415  (reading a history needs no scenario)
+    from slosh_cli.scenario import scenario_to_yaml
 
     with replacing(path) as temporary, h5py.File(temporary, "x") as file:
         time = _write_channel(file, TIME, result.time)
@@ -162,9 +162,7 @@ def _attributes(result: Result) -> dict[str, Any]:
         "mean_total_wheel_load_N": result.mean_total_wheel_load_N,
         "weight_N": result.weight_N,
     }
-    ledger = {
-        f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()
-    }
+    ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
     every = circumstances | summary | ledger | work
     return {key: np.nan if value is None else value for key, value in every.items()}
@@ -201,9 +199,7 @@ def _unreadable(path: Path) -> Iterator[None]:
     if not path.exists():
         raise FileError(f"{path} does not exist", where=str(path))
     if path.is_dir():
-        raise FileError(
-            f"{path} is a folder; give the history file in it, say {path / 'run.h5'}", where=str(path)
-        )
+        raise FileError(f"{path} is a folder; give the history file in it, say {path / 'run.h5'}", where=str(path))
     try:
         yield
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:

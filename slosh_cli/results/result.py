@@ -169,6 +169,6 @@ def _read_only(values: Vector) -> Vector:
 
 def frame(time: Vector, channels: Mapping[str, Vector]) -> "pd.DataFrame":
     """Channels over time as a DataFrame with the index `time` in s."""
-    import pandas as pd  # noqa: PLC0415  (slow to import, and only this function needs it)
+    import pandas as pd
 
     return pd.DataFrame(dict(channels), index=pd.Index(time, name=TIME.name))

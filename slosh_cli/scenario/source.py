@@ -28,7 +28,7 @@ def text_of(path: Path) -> str:
         given, fix = f"more than {LONGEST_FILE} bytes", "name a scenario file"
         raise _unreadable(path, f"must have at most {LONGEST_FILE} bytes", given, fix)
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode("utf-8")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         given = f"the byte {raw[error.start]:#04x} at position {error.start}"

@@ -271,7 +271,7 @@ def _repaired(unit: str, kind: Dimension) -> str:
         return (same or difflib.get_close_matches(name, _DEFINITIONS, 1) or [name])[0]
 
     powered = re.sub(r"([A-Za-z])([0-9])", r"\1^\2", unit)
-    for candidate in (powered, _NAME.sub(known, powered), _NAME.sub(known, powered.replace("-", " "))):
+    for candidate in (_NAME.sub(known, powered), _NAME.sub(known, powered.replace("-", " "))):
         if fits(candidate):
             return candidate
     return ""

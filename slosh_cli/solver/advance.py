@@ -261,13 +261,11 @@ def _finite(point):
 
 
 @inner_kernel
-def _after_events(model, scratch, state, outcome):
+def _after_events(model, scratch, state):
     """Restart after a switch: consistent accelerations, a short step, protection against chatter."""
     state.work[EVENTS] += 1
     state.counts[STALLED] += 1
     state.clock[NEXT_STEP] = min(state.clock[NEXT_STEP], RESTART_STEP)
-    if outcome != RUNNING:
-        return outcome
     if not _make_consistent(model, scratch, state):
         return UNSOLVED
     if state.counts[STALLED] > MOST_STALLED:
@@ -285,7 +283,7 @@ def advance(model, scratch, state, rows, most_steps):
             return TIME_LIMIT
         if time >= next_break(model.brake, state.counts[PHASE]):
             _onset(state)
-            outcome = _after_events(model, scratch, state, RUNNING)
+            outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:
                 return outcome
         step = _limited_step(model, state)
@@ -315,7 +313,7 @@ def advance(model, scratch, state, rows, most_steps):
         if not accepted:
             if not _switch_unarmed(state, state.values_before, state.values):
                 return STALLED_EVENTS
-            outcome = _after_events(model, scratch, state, RUNNING)
+            outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:
                 return outcome
             continue
@@ -329,8 +327,10 @@ def advance(model, scratch, state, rows, most_steps):
         switched, outcome = _apply_events(state, state.values_before, state.values)
         for k in range(EVENT_COUNT):
             state.values_before[k] = state.values[k]
+        if outcome != RUNNING:
+            return outcome
         if switched:
-            outcome = _after_events(model, scratch, state, outcome)
+            outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:
                 return outcome
     return RUNNING

@@ -63,7 +63,8 @@ def _guess(source, point):
 def take_step(model, scratch, work, start, middle, end, energies, locked, time, step, phase):
     """Try a step of `step` (s) from `start` at `time` (s).
 
-    Returns the error over the allowed one, negative where a stage could not be solved. Fills `middle` and `end`, their powers, and the energies (3,) at the end. `start.power` must be known.
+    Returns the error over the allowed one, negative where a stage could not be solved. Fills `middle` and `end`, their
+    powers, and the energies (3,) at the end. `start.power` must be known.
     """
     implicit = DIAGONAL * step
     speed = start.v[0] + step * start.a[0]

@@ -4,6 +4,8 @@
 surface with `kappa = omega^2/g`. In the weak form, for all v,
 
     integral(grad phi . grad v + k^2 phi v) dA = kappa integral(phi v) dy over the surface.
+
+scikit-fem and scipy are imported where they are used: a run with given coefficients does without them.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ from slosh_cli.tank.mesh import Floats, Ints, SectionMesh
 from slosh_cli.tank.wetted import Side
 
 _QUADRATURE = 6  # exact for products of two quadratics on elements with a curved edge
+
+_LANCZOS = 12  # vectors kept by the Lanczos iteration; a first mode is found in as many solves and a few
 
 
 class Parity(IntEnum):
@@ -143,7 +147,8 @@ def _lowest(matrix: Any, surface: Ints, mass: Any, count: int) -> tuple[Floats, 
 
     operator = LinearOperator(mass.shape, matvec=from_surface, dtype=np.float64)
     start = np.asarray(transposed @ np.ones(len(surface)), dtype=np.float64)
-    inverse, vectors = eigsh(operator, k=count, which="LA", v0=start, tol=0.0)
+    basis = min(len(surface), max(_LANCZOS, 2 * count + 8))
+    inverse, vectors = eigsh(operator, k=count, which="LA", v0=start, ncv=basis, tol=0.0)
     order = np.argsort(-inverse)
     potentials = [potential_of(vectors[:, one]) / inverse[one] for one in order]
     return 1.0 / inverse[order], np.column_stack(potentials)

@@ -13,10 +13,8 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from threading import Lock
 
-import numpy as np
-
 from slosh_cli.scenario.units import STANDARD_GRAVITY
-from slosh_cli.tank.eigenproblem import HalfSectionElements, SurfaceModes
+from slosh_cli.tank.eigenproblem import HalfSectionElements
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.section import Section
 from slosh_cli.tank.shape import ModeShape, mode_shape
@@ -24,8 +22,9 @@ from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 
 TOLERANCE = 1e-5
-"""Relative change of the frequencies from one mesh to the next, twice as fine, below which refining ends."""
+"""Relative change of frequencies and heights from one mesh to the next, twice as fine, that ends refining."""
 
+_SMALLEST_HEIGHT = 1e-3  # of the depth: smaller heights count as this large when their change is judged
 _MOST_UNKNOWNS = 150_000
 _CACHE_SIZE = 256
 
@@ -47,18 +46,25 @@ class LongitudinalMode:
     mu: float
     shape: ModeShape
 
+    @property
+    def height(self) -> float:
+        """Height above the tank's lowest point at which the mode's force acts, m."""
+        return self.lambda_02 / self.lambda_1
+
 
 @dataclass(frozen=True)
 class LongitudinalModes:
     """Modes n = 1, 3, 5, ... and how they were reached.
 
     `relative_change` is the change of the first or the last frequency in the last refinement, whichever is
-    larger (the error left is about a fifteenth of it), `refinements` how often the first mesh was refined,
-    `unknowns` the size of the last problem and `solve_seconds` the time all of it took.
+    larger (the error left is about a fifteenth of it), `height_change` the same of the heights at which the
+    forces act, `refinements` how often the first mesh was refined, `unknowns` the size of the last problem and
+    `solve_seconds` the time all of it took.
     """
 
     modes: tuple[LongitudinalMode, ...]
     relative_change: float
+    height_change: float
     refinements: int
     unknowns: int
     solve_seconds: float
@@ -67,7 +73,8 @@ class LongitudinalModes:
 def longitudinal_modes(section: Section, depth: float, length: float, count: int = 1) -> LongitudinalModes:
     """The first `count` odd longitudinal modes of a tank filled to `depth` m, `length` m long.
 
-    The mesh is refined until the first and the last frequency change by less than TOLERANCE. Results are kept
+    The mesh is refined until frequency and height of the first and the last mode change by less than TOLERANCE.
+    Results are kept
     by geometry, so asking again costs nothing. Raises TankError where the section cannot be represented,
     ValueError for a count or length that is not positive.
     """
@@ -84,37 +91,45 @@ def mode_number(position: int) -> int:
 def _compute(section: Section, depth: float, length: float, count: int) -> LongitudinalModes:
     started = time.perf_counter()
     numbers = [mode_number(position) for position in range(count)]
-    mesh = triangulate(half_section(section, depth), numbers[-1] * math.pi / length)
     watched = sorted({numbers[0], numbers[-1]})
-    previous, change, refinements = None, math.inf, 0
-    while True:
-        elements = HalfSectionElements(mesh)
-        solved = {n: elements.modes(n * math.pi / length) for n in watched}
-        frequencies = np.sqrt([solved[n].kappa[0] for n in watched])
-        if previous is not None:
-            change = float(np.abs(frequencies / previous - 1.0).max())
-        if change < TOLERANCE:
-            break
+    mesh = triangulate(half_section(section, depth), numbers[-1] * math.pi / length)
+    elements = HalfSectionElements(mesh)
+    modes = {n: longitudinal_mode(elements, n, length) for n in watched}
+    changes, refinements = (math.inf, math.inf), 0
+    while not max(changes) < TOLERANCE:
         if elements.size > _MOST_UNKNOWNS:
             raise TankError(
-                f"the slosh frequencies must settle to {TOLERANCE:g}, but still change by {change:.1e} with "
+                f"the slosh frequencies must settle to {TOLERANCE:g}, but still change by {max(changes):.1e} with "
                 f"{elements.size} unknowns; ask for fewer modes"
             )
-        previous, refinements, mesh = frequencies, refinements + 1, mesh.refined()
-    solved |= {n: elements.modes(n * math.pi / length) for n in numbers if n not in solved}
-    modes = tuple(longitudinal_mode(elements, n, length, solved[n]) for n in numbers)
-    return LongitudinalModes(modes, change, refinements, elements.size, time.perf_counter() - started)
+        mesh, refinements = mesh.refined(), refinements + 1
+        elements = HalfSectionElements(mesh)
+        previous, modes = modes, {n: longitudinal_mode(elements, n, length) for n in watched}
+        changes = _changes([(previous[n], modes[n]) for n in watched], depth)
+    modes |= {n: longitudinal_mode(elements, n, length) for n in numbers if n not in modes}
+    found = tuple(modes[n] for n in numbers)
+    return LongitudinalModes(found, *changes, refinements, elements.size, time.perf_counter() - started)
 
 
-def longitudinal_mode(
-    elements: HalfSectionElements, n: int, length: float, solved: SurfaceModes | None = None
-) -> LongitudinalMode:
-    """Mode `n` of a tank `length` m long on one given mesh, the eigenproblem `solved` already or here.
+def _changes(pairs: list[tuple[LongitudinalMode, LongitudinalMode]], depth: float) -> tuple[float, float]:
+    """Largest relative change of the frequencies and of the heights from one mesh to the next.
 
-    Integrals over the half section count twice. `lambda_02` is about the mesh's own z = 0.
+    A height much smaller than the depth is the difference of two of its size and counts against the depth.
+    """
+    frequency = max(abs(after.frequency / before.frequency - 1.0) for before, after in pairs)
+    height = max(
+        abs(after.height - before.height) / max(abs(after.height), _SMALLEST_HEIGHT * depth) for before, after in pairs
+    )
+    return frequency, height
+
+
+def longitudinal_mode(elements: HalfSectionElements, n: int, length: float) -> LongitudinalMode:
+    """Mode `n` of a tank `length` m long on one given mesh; `lambda_02` is about the mesh's own z = 0.
+
+    Integrals over the half section count twice.
     """
     wavenumber = n * math.pi / length
-    solved = solved or elements.modes(wavenumber)
+    solved = elements.modes(wavenumber)
     kappa, potential = float(solved.kappa[0]), solved.potential[:, 0]
     half_width = elements.section_mesh.half.half_width
     potential = potential * half_width / (kappa * (elements.surface_of @ potential))

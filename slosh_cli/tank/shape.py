@@ -35,7 +35,7 @@ def mode_shape(elements: HalfSectionElements, kappa: float, potential: Floats) -
     y, z = elements.basis.doflocs
     corners = elements.basis.element_dofs  # vertices 0, 1, 2, then the middles of edges 01, 12, 02
     parts = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])
-    half = np.vstack([corners[part].T for part in parts]).astype(np.int64)
+    half = _counter_clockwise(np.vstack([corners[part].T for part in parts]).astype(np.int64), y, z)
     surface = elements.surface_unknowns[np.argsort(y[elements.surface_unknowns])]
     left = surface[y[surface] > 0.0][::-1]
     return ModeShape(
@@ -46,3 +46,9 @@ def mode_shape(elements: HalfSectionElements, kappa: float, potential: Floats) -
         surface_y=np.concatenate([-y[left], y[surface]]),
         surface_rise=kappa * np.concatenate([potential[left], potential[surface]]),
     )
+
+
+def _counter_clockwise(triangles: Ints, y: Floats, z: Floats) -> Ints:
+    a, b, c = triangles.T
+    clockwise = (y[b] - y[a]) * (z[c] - z[a]) < (z[b] - z[a]) * (y[c] - y[a])
+    return np.where(clockwise[:, None], triangles[:, ::-1], triangles)

@@ -52,6 +52,10 @@ YAML_SYNTAX = (
         (50, "output.<<", "must be an alias of another mapping", "something else", "write `<<: *name`"),
     ),
     one(
+        "duplicate key in a merged mapping", "{interval: 10 ms}", "{<<: {interval: 1 ms, interval: 2 ms}}",
+        (50, "output.interval", "must be given once", "on lines 50 and 50", "keep one of them"),
+    ),
+    one(
         "list as a key", "output: {interval: 10 ms}", "output: {[a, b]: 3, interval: 10 ms}",
         (50, "output", "must have words as keys", "a list or mapping", "write a word"),
     ),
@@ -177,6 +181,16 @@ OVERRIDES = (
         expected=(
             ("--set output", "output.interval", "must be given once", "`interval` again", "keep one of them"),
         ),
+    ),
+    override(
+        "override of a mapping with a mistake in it", "output={interval: 5}",
+        expected=(
+            ("--set output", "output.interval", "must be a time with its unit", "`5` without a unit", "write `5 s`"),
+        ),
+    ),
+    override(
+        "override with a line end in it", r'braking.torque="kN\n12"',
+        expected=((TORQUE, "braking.torque", "must be a torque with its unit", "`kN\n12`", "write a finite number"),),
     ),
     override(
         "override into a list item", "tank.coefficients.0.mu=-3 kg",

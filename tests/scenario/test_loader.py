@@ -287,6 +287,14 @@ def test_replace_takes_si_numbers_and_texts_and_leaves_the_original(paper: Scena
     assert replace(paper, {"contact.adhesion": paper.contact.adhesion}) == paper
 
 
+def test_replace_from_computed_to_given_coefficients_and_back(paper: Scenario) -> None:
+    given = paper.tank.coefficients
+    computed = replace(paper, {"tank.coefficients": "computed"})
+    assert replace(computed, {"tank.coefficients": given}) == paper
+    with pytest.raises(ScenarioError, match=r"tank\.modes: must not be set where"):
+        replace(replace(computed, {"tank.modes": 2}), {"tank.coefficients": given})
+
+
 def test_replace_of_a_tank_alone() -> None:
     tank = load_tank_scenario(find_packaged("kolaei-half"))
     found = replace(tank, {"tank.radius": 1.0})

@@ -23,7 +23,7 @@ SECTIONS = {
     "V trough": PolygonalSection(V_TROUGH),
     "bottle": PolygonalSection(BOTTLE),
     "36-gon": PolygonalSection(regular_polygon(36)),
-    "201-gon": PolygonalSection(regular_polygon(201)),
+    "120-gon": PolygonalSection(regular_polygon(120)),
 }
 
 
