@@ -1,0 +1,90 @@
+"""What the rail tests compare with: exact element integrals, closed forms and Fourier integrals (model section 6).
+
+Nothing here uses the program's own formulas.
+"""
+
+from itertools import pairwise, product
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from scipy.integrate import quad
+
+from slosh_cli.scenario import Domain, Foundation, Rail, Track
+
+WHEELS = np.array([4.0, 0.0, -2.0, -4.0])
+"""Wheel 2 is the loaded one: it stands in the middle of the domain, and every spacing is a multiple of 1 m."""
+LOADED = 1
+EI, MASS, K, SHEAR = 200e9 * 3.06e-5, 60.0, 1.0e7, 666875.0
+FORMS = {"mass_form": (0, 0), "tension_form": (1, 1), "drift_form": (0, 1), "bending_form": (2, 2), "twist_form": (1, 2)}
+"""Order of the derivatives of the left and right shape function in each form."""
+
+
+def track(element_length=0.5, length=80.0, shear=SHEAR, damping=0.0, shear_damping=0.0, stiffness=K):
+    """The paper's track, undamped unless asked for."""
+    return Track(
+        rail=Rail(youngs_modulus=200e9, second_moment=3.06e-5, mass_per_length=MASS),
+        foundation=Foundation(
+            stiffness=stiffness, shear_stiffness=shear, damping=damping, shear_damping=shear_damping
+        ),
+        domain=Domain(length=length, element_length=element_length),
+    )
+
+
+def dense(banded):
+    """Full matrix of a row-wise band of three diagonals either side."""
+    size = banded.shape[0]
+    full = np.zeros((size, size))
+    for i, j in product(range(size), repeat=2):
+        if abs(i - j) <= 3:
+            full[i, j] = banded[i, 3 + j - i]
+    return full
+
+
+def hermite(length):
+    """The four cubics of an element of `length` as exact polynomials of the local x, from their four conditions."""
+    conditions = [[1, 0, 0, 0], [0, 1, 0, 0], [1, length, length**2, length**3], [0, 1, 2 * length, 3 * length**2]]
+    return [Polynomial(np.linalg.solve(np.array(conditions, dtype=float), row)) for row in np.eye(4)]
+
+
+def exact_form(nodes, left, right):
+    """INT (d^left N_i) (d^right N_j) over all elements between `nodes`, ends held: rows as in the program."""
+    full = np.zeros((2 * nodes.size, 2 * nodes.size))
+    for e, (a, b) in enumerate(pairwise(nodes)):
+        shapes = hermite(b - a)
+        for i, j in product(range(4), repeat=2):
+            integral = (shapes[i].deriv(left) * shapes[j].deriv(right)).integ()
+            full[2 * e + i, 2 * e + j] += integral(b - a) - integral(0.0)
+    free = [i for i in range(2 * nodes.size) if i not in (0, 2 * nodes.size - 2)]
+    return full[np.ix_(free, free)]
+
+
+def free_values(nodes, values, slopes):
+    """Nodal values and slopes in the program's order: the deflections of both ends are left out."""
+    return np.delete(np.column_stack([values, slopes]).ravel(), [0, 2 * nodes.size - 2])
+
+
+def closed_form(r, speed, shear=SHEAR, stiffness=K):
+    """Undamped steady deflection (m, down) per newton at distance `r` from a load moving at `speed`.
+
+    `y0 e^(-a|r|) (cos b r + (a/b) sin b|r|)` with y0 of model section 6; a and b solve `EI p^4 - T p^2 + k = 0`.
+    """
+    tension = shear - MASS * speed**2
+    root = 2 * np.sqrt(stiffness * EI)
+    y0 = 1 / (2 * np.sqrt(stiffness) * np.sqrt(tension + root))
+    a, b = np.sqrt((root + tension) / (4 * EI)), np.sqrt((root - tension) / (4 * EI))
+    r = np.abs(r)
+    return y0 * np.exp(-a * r) * (np.cos(b * r) + a / b * np.sin(b * r))
+
+
+def fourier_deflection(r, speed, shear, damping, shear_damping):
+    """Steady deflection (m, down) per newton with damping, `1/pi INT Re[e^(i xi r) / D(xi)] dxi`.
+
+    In the convected frame `d/dt = -V d/dr`, so `D = EI xi^4 + (k_sm - m V^2) xi^2 + k - i V xi (alpha + lam xi^2)`.
+    """
+
+    def transform(xi):
+        symbol = EI * xi**4 + (shear - MASS * speed**2) * xi**2 + K
+        return np.exp(1j * xi * r) / (symbol - 1j * speed * xi * (damping + shear_damping * xi**2))
+
+    pieces = np.concatenate([np.linspace(0.0, 20.0, 81), np.geomspace(20.0, 5e4, 200)[1:]])
+    return sum(quad(lambda xi: transform(xi).real, *piece, epsabs=1e-20)[0] for piece in pairwise(pieces)) / np.pi
