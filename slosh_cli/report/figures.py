@@ -13,6 +13,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from slosh_cli.report.record import (
     Record,
@@ -27,7 +28,7 @@ from slosh_cli.results.files import replacing
 
 FORMATS: Final = ("png", "svg")
 RESOLUTION: Final = 200  # dots per inch
-CAPTION_WIDTH: Final = 118  # characters
+CAPTION_WIDTH: Final = 126  # characters
 
 WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
     1: {"color": "#08306b", "linestyle": "-", "label": "wheel 1"},
@@ -53,8 +54,8 @@ STYLE: Final[dict[Any, Any]] = {
     "grid.color": "#e4e4e4",
     "grid.linewidth": 0.8,
     "legend.frameon": False,
-    "legend.fontsize": 12,
-    "legend.handlelength": 2.8,
+    "legend.fontsize": 11.5,
+    "legend.handlelength": 2.5,
     "lines.linewidth": 1.6,
     "svg.fonttype": "none",
     "svg.hashsalt": "slosh",
@@ -139,7 +140,7 @@ def slosh(record: Record) -> Figure:
     """Rise of the surface at both ends below the roof, amplitudes of the modes, force of the liquid."""
     amplitudes = _amplitudes(record)
     shares = [1.5, 1.0, 1.0] if amplitudes else [1.5, 1.0]
-    figure, (surface, *others) = _panels(record, "The liquid", shares, height=7.8)
+    figure, (surface, *others) = _panels(record, "Sloshing of the liquid", shares, height=7.8)
     surface.plot(record.time, record.channels["surface_front"], **FRONT, label="front end wall")
     surface.plot(record.time, record.channels["surface_rear"], **REAR, label="rear end wall")
     surface.set_ylabel("surface rise / m")
@@ -169,7 +170,7 @@ def _panels(record: Record, title: str, shares: Sequence[float], height: float) 
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
     note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
-    extra = 0.23 * lines
+    extra = 0.195 * lines + 0.05 * bool(lines)
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)
     total = height + extra
     figure.text(0.018, 1.0 - 0.16 / total, title, fontsize=17, fontweight="bold", color=INK, va="top")
@@ -190,6 +191,7 @@ def _panels(record: Record, title: str, shares: Sequence[float], height: float) 
     for panel in axes:
         panel.set_xlim(float(record.time[0]), max(float(record.time[-1]), 0.1) * 1.01)
     axes[-1].set_xlabel("time / s")
+    axes[-1].xaxis.set_major_locator(MaxNLocator(nbins=10, steps=[1, 2, 5, 10]))
     figure.align_ylabels(list(axes))
     return figure, list(axes)
 
@@ -206,7 +208,7 @@ def _mark_onset(record: Record, axes: Axes, *, named: bool = True) -> None:
 
 
 def _legend(axes: Axes, columns: int) -> None:
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.6)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.3)
 
 
 def _draw_locked(record: Record, axes: Axes) -> None:

@@ -226,13 +226,17 @@ def _override(document: Document, key: str, text: str, place: str) -> None:
 def _parse(text: str, file: str) -> Document:
     """The document of a YAML text; ScenarioError where the text is no YAML or no mapping."""
     document = Document()
+    problem = None
+    node = None
     try:
         node = yaml.SafeLoader(text).get_single_node()
         if node is not None:
             document.data = _Builder(document).build(node, (), node)
     except (yaml.YAMLError, RecursionError) as error:
         line, *words = _syntax(error, text)
-        raise ScenarioError(file, (Problem(line, "", *words),)) from None
+        problem = Problem(line, "", *words)
+    if problem is not None:  # raised out here, without the context: a RecursionError's is too deep to be pickled
+        raise ScenarioError(file, (problem,))
     if not isinstance(document.data, dict) and not document.problems:
         given = "an empty file" if node is None else plain(document.data)
         fix = "write `format: 1`, `name: ...` and so on, or start from `slosh init`"

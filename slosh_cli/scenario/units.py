@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 from slosh_cli.errors import ValueRefused
 
 if TYPE_CHECKING:
-    import pint  # 0.2 s that only commands which read a quantity should pay
+    import pint
 
 STANDARD_GRAVITY: Final = 9.81
 """m/s^2, the value of the model everywhere."""

@@ -24,7 +24,7 @@ TOLERANCE = 1e-5
 """Change from one mesh to the next, as a share of the frozen load's value, below which refining ends."""
 
 _SHORT = 6.0  # wavenumber times the section's narrowest measure beyond which waves are short
-_MOST_SAMPLES = 40
+_MOST_SAMPLES = 24
 _MOST_UNKNOWNS = 150_000
 
 
@@ -71,7 +71,7 @@ def free_masses(tank: LoadedTank, longitudinal: int, transverse: int) -> Floats:
     """
     half, length = _half_of(tank), tank.length
     wavenumbers = (2.0 * np.arange(longitudinal) + 1.0) * math.pi / length
-    elements = HalfSectionElements(triangulate(half, float(wavenumbers[-1])).refined().refined())
+    elements = HalfSectionElements(triangulate(half, float(wavenumbers[-1])).refined())
     masses = np.empty((longitudinal, transverse))
     for row, wavenumber in zip(masses, wavenumbers, strict=True):
         solved = elements.modes(float(wavenumber), transverse)
@@ -106,8 +106,9 @@ def _sampled_wavenumbers(half: HalfSection, length: float) -> Floats:
     """Harmonics up to where waves are short against the section; a selection of them where they are many."""
     narrowest = min(half.depth, half.half_width, half.area / half.depth)
     count = max(1, math.ceil((_SHORT / narrowest * length / math.pi + 1.0) / 2.0))
-    chosen = np.unique(np.round(np.geomspace(1.0, 2.0 * count, min(count, _MOST_SAMPLES)) / 2.0 - 0.5))
-    return np.asarray((2.0 * chosen + 1.0) * math.pi / length, dtype=np.float64)
+    samples = np.geomspace(1.0, 2.0 * count - 1.0, min(count, _MOST_SAMPLES))
+    numbers = 2.0 * np.unique(np.round((samples - 1.0) / 2.0)) + 1.0
+    return np.asarray(numbers * math.pi / length, dtype=np.float64)
 
 
 def _settled(

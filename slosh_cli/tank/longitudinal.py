@@ -74,9 +74,8 @@ def longitudinal_modes(section: Section, depth: float, length: float, count: int
     """The first `count` odd longitudinal modes of a tank filled to `depth` m, `length` m long.
 
     The mesh is refined until frequency and height of the first and the last mode change by less than TOLERANCE.
-    Results are kept
-    by geometry, so asking again costs nothing. Raises TankError where the section cannot be represented,
-    ValueError for a count or length that is not positive.
+    Results are kept by geometry, so asking again costs nothing. Raises TankError where the section cannot be
+    represented, ValueError for a count or length that is not positive.
     """
     if count < 1 or not length > 0.0:
         raise ValueError(f"count and length must be positive, but {count} and {length} were given")
@@ -99,7 +98,7 @@ def _compute(section: Section, depth: float, length: float, count: int) -> Longi
     while not max(changes) < TOLERANCE:
         if elements.size > _MOST_UNKNOWNS:
             raise TankError(
-                f"the slosh frequencies must settle to {TOLERANCE:g}, but still change by {max(changes):.1e} with "
+                f"frequencies and heights must settle to {TOLERANCE:g}, but still change by {max(changes):.1e} with "
                 f"{elements.size} unknowns; ask for fewer modes"
             )
         mesh, refinements = mesh.refined(), refinements + 1

@@ -1,5 +1,6 @@
 """The error shell: one message, the right exit code, never a traceback."""
 
+import io
 import json
 import os
 import subprocess
@@ -7,8 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from plausible import unfinished_run
 from stand_ins import PAPER, Slosh, Solver
 
+from slosh_cli.cli import main
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.errors import SloshError
 
@@ -144,6 +147,20 @@ def test_a_reader_that_goes_away_is_no_error(arguments: str) -> None:
     process.stderr.close()
     assert process.wait() == ExitCode.DONE
     assert complaints == b""
+
+
+def test_a_reader_that_goes_away_does_not_hide_that_a_run_had_no_answer(
+    solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Gone(io.StringIO):
+        def write(self, _: str) -> int:
+            raise BrokenPipeError
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("slosh_cli.cli.output.close_stdout", lambda: None)
+    monkeypatch.setattr(sys, "stdout", Gone())
+    solver.answer = unfinished_run
+    assert main(["run", str(PAPER), "--no-figures"]) == ExitCode.NO_ANSWER
 
 
 def test_a_poor_terminal_is_no_error() -> None:

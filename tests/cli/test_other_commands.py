@@ -1,6 +1,7 @@
 """`slosh init`, `check`, `schema` and `plot`."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ def test_init_writes_any_packaged_scenario(slosh: Slosh, tmp_path: Path, name: s
     assert outcome.code == ExitCode.DONE
     a_stop = isinstance(load_any_scenario("mine.yaml"), Scenario)
     assert ("slosh run mine.yaml" in outcome.out) is a_stop
+    assert set(packaged_scenarios()) - set(re.findall(r"[\w-]+", outcome.out)) == {name}
     assert (tmp_path / "mine.yaml").read_bytes() == packaged_scenarios()[name].read_bytes()
     assert slosh("check", "mine.yaml").code == ExitCode.DONE
 

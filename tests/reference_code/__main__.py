@@ -1,6 +1,6 @@
 """Write the oracle's stops to ``tests/data/plain_stops.csv``: ``python -m tests.reference_code``.
 
-Takes about eight minutes. Every stop is made twice, the second time with half the step, so the file itself
+Takes about ten minutes. Every stop is made twice, the second time with half the step, so the file itself
 shows how far it has converged.
 """
 

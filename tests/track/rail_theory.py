@@ -15,7 +15,13 @@ WHEELS = np.array([4.0, 0.0, -2.0, -4.0])
 """Wheel 2 is the loaded one: it stands in the middle of the domain, and every spacing is a multiple of 1 m."""
 LOADED = 1
 EI, MASS, K, SHEAR = 200e9 * 3.06e-5, 60.0, 1.0e7, 666875.0
-FORMS = {"mass_form": (0, 0), "tension_form": (1, 1), "drift_form": (0, 1), "bending_form": (2, 2), "twist_form": (1, 2)}
+FORMS = {
+    "mass_form": (0, 0),
+    "tension_form": (1, 1),
+    "drift_form": (0, 1),
+    "bending_form": (2, 2),
+    "twist_form": (1, 2),
+}
 """Order of the derivatives of the left and right shape function in each form."""
 
 
@@ -23,9 +29,7 @@ def track(element_length=0.5, length=80.0, shear=SHEAR, damping=0.0, shear_dampi
     """The paper's track, undamped unless asked for."""
     return Track(
         rail=Rail(youngs_modulus=200e9, second_moment=3.06e-5, mass_per_length=MASS),
-        foundation=Foundation(
-            stiffness=stiffness, shear_stiffness=shear, damping=damping, shear_damping=shear_damping
-        ),
+        foundation=Foundation(stiffness=stiffness, shear_stiffness=shear, damping=damping, shear_damping=shear_damping),
         domain=Domain(length=length, element_length=element_length),
     )
 

@@ -1,0 +1,194 @@
+"""Stops on a Dask cluster that runs already: batches out, outcomes back as they come.
+
+Needs the extra `slosh-cli[cluster]` here and, in the same version, wherever a worker runs.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import queue
+import time
+from collections import deque
+from collections.abc import Generator, Iterable, Iterator
+from itertools import islice
+from statistics import median
+from threading import Event
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.errors import SloshError, UsageError
+from slosh_cli.study.key import RESULT_VERSION
+from slosh_cli.study.outcome import Outcome, failed, solve
+from slosh_cli.study.plan import Stop
+from slosh_cli.version import __version__
+
+if TYPE_CHECKING:
+    from types import TracebackType
+    from typing import Self
+
+    from distributed import Client, Future
+
+Batch = tuple[Stop, ...]
+
+BATCH_SECONDS: Final = 4.0
+"""Work of a batch in s: long beside what the scheduler spends on it, short enough to lose with a worker."""
+_FIRST_BATCH: Final = 4
+_LARGEST_BATCH: Final = 1000
+_IN_HAND: Final = 2
+"""Batches per thread of the cluster that are on their way at any time."""
+_CONNECT_SECONDS: Final = 10.0
+_POLL_SECONDS: Final = 0.3
+_COUNT_SECONDS: Final = 5.0
+"""How often the workers are counted: some may come later."""
+
+
+class ClusterError(SloshError):
+    """The cluster cannot do the work: no scheduler, other versions, connection lost."""
+
+    code = "cluster"
+
+
+def solve_batch(batch: Batch, needed: str) -> list[Outcome]:
+    """What a worker does. Raises ClusterError where its version of slosh is not the `needed` one."""
+    if needed != this_version():
+        raise ClusterError(f"a worker has {this_version()}, but the study needs {needed}; install the same there")
+    return [solve(stop) for stop in batch]
+
+
+def this_version() -> str:
+    """Program and result version that both ends must share."""
+    return f"slosh {__version__} (results {RESULT_VERSION})"
+
+
+class Cluster:
+    """Computes stops on the workers of the Dask scheduler at `address`; a context manager.
+
+    Raises UsageError without the extra, ClusterError where nobody answers at `address`.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            text = "--cluster needs Dask: python -m pip install 'slosh-cli[cluster]', here and for the workers"
+            raise UsageError(text, "--cluster") from None
+        self.address = address
+        for name in ("distributed.client", "distributed.comm", "distributed.core"):  # what they say, we say
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        try:
+            self._client: Client = Client(
+                address, timeout=_CONNECT_SECONDS, set_as_default=False, name="slosh", direct_to_workers=False
+            )
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--cluster") from None
+        self._batches: dict[Any, Batch] = {}
+        self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._seconds: deque[float] = deque(maxlen=64)
+        self._threads, self._counted = 0, -math.inf
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._client.close(timeout=2.0)
+
+    @property
+    def words(self) -> str:
+        """What computes, for people."""
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        threads = sum(worker["nthreads"] for worker in workers.values())
+        if not workers:
+            return f"the cluster at {self.address}, which has no workers yet"
+        return f"{threads} threads of {len(workers)} workers at {self.address}"
+
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+        """Outcomes batch by batch, in no particular order. `cancel` gives up what is on its way and ends the iteration.
+
+        The batch of a worker that dies goes to another one; a stop that takes worker after worker with it ends as
+        a failure of its own. Raises ClusterError when the scheduler is lost.
+        """
+        remaining = iter(stops)
+        left = total
+        try:
+            while not cancel.is_set():
+                for batch in self._next_batches(remaining, left):
+                    left -= len(batch)
+                    self._send(batch)
+                if not self._batches:
+                    break
+                future = self._wait()
+                if future is not None:
+                    yield from self._received(future)
+        finally:
+            for future in list(self._batches):
+                future.cancel()
+            self._batches.clear()
+
+    def _next_batches(self, stops: Iterator[Stop], left: int) -> Iterator[Batch]:
+        """Batches until enough are on their way, smaller towards the end so that all workers end together."""
+        self._count_threads()
+        while len(self._batches) < _IN_HAND * max(self._threads, 1):
+            share = math.ceil(left / (_IN_HAND * max(self._threads, 1)))
+            wanted = round(BATCH_SECONDS / median(self._seconds)) if self._seconds else _FIRST_BATCH
+            batch = tuple(islice(stops, max(1, min(share, wanted, _LARGEST_BATCH))))
+            if not batch:
+                return
+            left -= len(batch)
+            yield batch
+
+    def _count_threads(self) -> None:
+        now = time.monotonic()
+        if now - self._counted > _COUNT_SECONDS and self._client.status == "running":
+            self._threads = sum(self._client.nthreads().values())
+            self._counted = now
+
+    def _send(self, batch: Batch) -> None:
+        future = self._client.submit(solve_batch, batch, this_version(), pure=False)
+        self._batches[future] = batch
+        future.add_done_callback(self._done.put)
+
+    def _wait(self) -> Future | None:
+        """The next future that has ended; None when nothing happens for a moment."""
+        try:
+            return self._done.get(timeout=_POLL_SECONDS)
+        except queue.Empty:
+            if self._client.status in ("closed", "closing"):
+                raise self._lost() from None
+            return None
+
+    def _received(self, future: Future) -> Iterator[list[Outcome]]:
+        """The outcomes of a batch, or the batch sent again stop by stop where it killed its workers."""
+        from distributed import KilledWorker
+
+        batch = self._batches.pop(future, ())
+        if future.status in ("cancelled", "lost"):
+            raise self._lost()
+        error = future.exception() if future.status == "error" else None
+        if error is None:
+            outcomes: list[Outcome] = future.result()
+            self._seconds.extend(max(outcome.seconds, 1e-3) for outcome in outcomes)
+            yield outcomes
+        elif not isinstance(error, KilledWorker):
+            raise _told(error)
+        elif len(batch) > 1:
+            for stop in batch:
+                self._send((stop,))
+        else:
+            yield [failed(stop, "every worker that computed this stop died", final=False) for stop in batch]
+
+    def _lost(self) -> ClusterError:
+        return ClusterError(
+            f"lost the Dask scheduler at {self.address}; every stop received before is kept: start the scheduler, "
+            "then the same command again",
+            "--cluster",
+        )
+
+
+def _told(error: BaseException) -> SloshError:
+    """An error of a worker in words for the person who started the study."""
+    if isinstance(error, SloshError):
+        return error
+    text = f"{type(error).__name__}: {error}"
+    if isinstance(error, ImportError):
+        text += f"; the workers need slosh too: python -m pip install 'slosh-cli[cluster]=={__version__}'"
+    return ClusterError(f"a worker failed: {text}", "--cluster")

@@ -1,0 +1,146 @@
+"""A study: a scenario, what varies in it, and the stops that follow from both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace as copy_of
+from typing import Any, Final
+
+from slosh_cli.errors import Problem, ScenarioError
+from slosh_cli.scenario import Scenario, parse_quantity, replace
+from slosh_cli.study.axis import Axis
+from slosh_cli.study.key import stop_key
+
+SPEED: Final = "braking.initial_speed"
+TORQUE: Final = "braking.torque"
+LIQUID: Final = "tank.liquid.model"
+SOLID: Final = "rigid"
+
+_TRIES: Final = 200
+"""Combinations in which a value may prove itself before it is refused."""
+_LONGEST_INTERVAL: Final = 100.0
+"""Output interval in s of a stop whose history nobody keeps."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """One stop to compute: its place in the study, its key, its scenario; what a worker is sent."""
+
+    index: int
+    key: str
+    scenario: Scenario
+    history: bool = False
+
+
+@dataclass(frozen=True)
+class Study:
+    """A grid of stops of `base`; the last of `axes` varies fastest.
+
+    `file` is what messages name: the study file or the scenario.
+    """
+
+    name: str
+    base: Scenario
+    axes: tuple[Axis, ...]
+    file: str
+    histories: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of stops."""
+        return math.prod(len(axis.values) for axis in self.axes)
+
+    def positions(self, index: int) -> tuple[int, ...]:
+        """Per axis the place of the value that stop `index` takes."""
+        places: list[int] = []
+        for axis in reversed(self.axes):
+            index, place = divmod(index, len(axis.values))
+            places.append(place)
+        return tuple(reversed(places))
+
+    def values(self, index: int) -> dict[str, str]:
+        """Key path to value, as text, of stop `index`."""
+        pairs = zip(self.axes, self.positions(index), strict=True)
+        return {axis.key: axis.values[place] for axis, place in pairs}
+
+    def stop(self, index: int) -> Stop:
+        """Stop `index`. Raises ScenarioError where its combination of values makes no sound scenario."""
+        values: dict[str, Any] = dict(self.values(index))
+        if self.histories:
+            values["description"] = describe(self.values(index))
+        else:
+            values["output.interval"] = _LONGEST_INTERVAL
+        try:
+            scenario = replace(self.base, values)
+        except ScenarioError as error:
+            raise ScenarioError(self.file, [self._placed(problem) for problem in error.problems]) from None
+        return Stop(index, stop_key(scenario), scenario, self.histories)
+
+    def conditions(self, index: int) -> dict[str, Any]:
+        """Speed in km/h, torque in kN m and model of the load of stop `index`, from its texts alone."""
+        values = self.values(index)
+        braking, liquid = self.base.braking, self.base.tank.liquid
+        speed = parse_quantity(values[SPEED], "speed") if SPEED in values else braking.initial_speed
+        torque = parse_quantity(values[TORQUE], "torque") if TORQUE in values else braking.torque
+        return {
+            "v0_km_h": tidy(speed * 3.6),
+            "torque_kN_m": tidy(torque / 1e3),
+            "liquid": values.get(LIQUID, str(liquid.model)),
+        }
+
+    def check(self) -> None:
+        """Raise ScenarioError for the first value of an axis that makes no sound scenario in any combination."""
+        for number, axis in enumerate(self.axes):
+            for place in range(len(axis.values)):
+                self._check_value(number, place)
+
+    def _check_value(self, number: int, place: int) -> None:
+        first: ScenarioError | None = None
+        for index in self._indices_with(number, place):
+            try:
+                self.stop(index)
+            except ScenarioError as error:
+                first = first or error
+            else:
+                return
+        if first is not None:
+            raise first
+
+    def _indices_with(self, number: int, place: int) -> Iterator[int]:
+        """Stops in which axis `number` takes the value at `place`, spread over the study."""
+        below = math.prod(len(axis.values) for axis in self.axes[number + 1 :])
+        count = len(self.axes[number].values)
+        total = self.size // count
+        for turn in range(0, total, max(1, total // _TRIES)):
+            above, rest = divmod(turn, below)
+            yield (above * count + place) * below + rest
+
+    def _placed(self, problem: Problem) -> Problem:
+        """A problem with its place as the person wrote it: an option or a line of the study file."""
+        for axis in self.axes:
+            if problem.override == axis.key:
+                return copy_of(problem, line=axis.line, override="" if axis.line else axis.source)
+        return problem
+
+
+def describe(values: Mapping[str, str]) -> str:
+    """``braking.torque 5 kN m, tank.fill 0.5``."""
+    return ", ".join(f"{key} {value}" for key, value in values.items())
+
+
+def tidy(value: float) -> float:
+    """Drop the rounding that a change of units leaves behind (80.00000000000001 km/h)."""
+    return float(f"{value:.12g}")
+
+
+def with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
+    """`axes` with those of `others` put in the place of the ones they share a key with, or before them all."""
+    known = {axis.key: axis for axis in axes}
+    new = []
+    for axis in others:
+        if axis.key in known:
+            known[axis.key] = axis
+        else:
+            new.append(axis)
+    return (*new, *known.values())

@@ -1,0 +1,94 @@
+"""The table of a study: one row per stop in the order of the grid, liquid beside solid."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final
+
+from slosh_cli.results.channels import WHEELS
+from slosh_cli.results.files import replacing
+from slosh_cli.study.axis import Axis
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+
+TABLE: Final = "braking_distance.csv"
+
+Row = dict[str, Any]
+
+_HEAD: Final = ("v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status")
+_PER_WHEEL: Final = ("min_wheel_load_{}_N", "max_wheel_load_{}_N", "static_wheel_load_{}_N", "locked_time_{}_s")
+_TAIL: Final = (
+    "ratio_to_solid", "within_linear_theory", "max_surface_m", "surface_limit_m",
+    *(column.format(i) for column in _PER_WHEEL for i in WHEELS),
+    "max_wheel_unloading", "mean_total_wheel_load_N", "weight_N", "energy_residual", "steps", "rejected_steps",
+    "reason", "warnings",
+)  # fmt: skip
+_OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
+
+
+def column_of(axis: Axis) -> str:
+    """Name of an axis in the table: its key path and unit, ``wagon.pivot_spacing_m``."""
+    unit = re.sub(r"[^A-Za-z0-9]+", "_", axis.unit).strip("_")
+    return f"{axis.key}_{unit}" if unit else axis.key
+
+
+def columns(study: Study) -> list[str]:
+    """The columns of a study's table, in order."""
+    varied = [column_of(axis) for axis in own_axes(study)]
+    return [*_HEAD, *varied, *_TAIL, *(["history"] if study.histories else [])]
+
+
+def own_axes(study: Study) -> list[Axis]:
+    """The axes that have a column of their own: all but speed, torque and liquid."""
+    return [axis for axis in study.axes if axis.key not in _OF_THE_HEAD]
+
+
+def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Iterator[Row]:
+    """Rows in the order of the grid, one group of liquids in memory at a time.
+
+    `answer` gives the row of a stop by its index, None for one that has not been computed: it is left out.
+    """
+    for _, group in groupby(range(study.size), key=lambda index: _point(study, index)):
+        found = [(index, answer(index)) for index in group]
+        known = [_row(study, index, given) for index, given in found if given is not None]
+        solid = next((row for row in known if row["liquid"] == SOLID), None)
+        for row in known:
+            row["ratio_to_solid"] = _ratio(row, solid)
+            yield row
+
+
+def _point(study: Study, index: int) -> tuple[int, ...]:
+    """The place of a stop in the grid without its liquid."""
+    pairs = zip(study.axes, study.positions(index), strict=True)
+    return tuple(place for axis, place in pairs if axis.key != LIQUID)
+
+
+def _row(study: Study, index: int, given: Mapping[str, Any]) -> Row:
+    places = dict(zip((axis.key for axis in study.axes), study.positions(index), strict=True))
+    return dict(given) | {column_of(axis): axis.plain(places[axis.key]) for axis in own_axes(study)}
+
+
+def _ratio(row: Row, solid: Row | None) -> float | None:
+    """Braking distance over that of the equivalent solid; None for the solid itself and without both answers."""
+    if solid is None or row is solid:
+        return None
+    mine, other = row.get("braking_distance_m"), solid.get("braking_distance_m")
+    return mine / other if mine is not None and other is not None else None
+
+
+def write_study_table(names: Sequence[str], rows: Iterable[Row], path: Path) -> int:
+    """Write rows as CSV with the columns `names`, empty where a row has none; returns how many there were.
+
+    The file at `path` is replaced only when the new one is whole. Raises FileError.
+    """
+    count = 0
+    with replacing(path) as temporary, temporary.open("x", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, fieldnames=names, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow(row)
+            count += 1
+    return count

@@ -1,0 +1,85 @@
+"""Stops on the threads of this machine: the compiled kernel releases the interpreter lock."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Generator, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from threading import Event
+from typing import TYPE_CHECKING
+
+from slosh_cli.study.outcome import Outcome, solve
+from slosh_cli.study.plan import Stop
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario
+
+_WAITING = 2
+"""Stops per thread that wait their turn: a thread never idles, and memory does not grow with the study."""
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class Threads:
+    """Computes stops on `jobs` threads; a few are in hand at any time, whatever their number."""
+
+    def __init__(self, jobs: int) -> None:
+        self.jobs = jobs
+
+    @property
+    def words(self) -> str:
+        """What computes, for people."""
+        return f"{self.jobs} thread{'s' if self.jobs > 1 else ''}"
+
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+        """Outcomes as they come, in no particular order. `cancel` gives up the stops in hand and ends the iteration."""
+        del total  # only workers far away need to know
+        waiting: set[Future[Outcome]] = set()
+        with ThreadPoolExecutor(self.jobs, thread_name_prefix="stop") as pool:
+            try:
+                for stop in stops:
+                    waiting.add(pool.submit(solve, stop, cancel))
+                    if len(waiting) >= self.jobs * (1 + _WAITING):
+                        done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                        yield _finished(done, cancel)
+                    if cancel.is_set():
+                        break
+                while waiting:
+                    done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                    yield _finished(done, cancel)
+            except BaseException:
+                cancel.set()  # the pool waits for its threads: they must not go on for the rest of their stops
+                raise
+
+
+def _finished(futures: Iterable[Future[Outcome]], cancel: Event) -> list[Outcome]:
+    """What the futures brought, without the stops that were given up."""
+    from slosh_cli.solver.run import Cancelled
+
+    outcomes = []
+    for future in futures:
+        try:
+            outcomes.append(future.result())
+        except Cancelled:
+            if not cancel.is_set():
+                raise
+    return sorted(outcomes, key=lambda outcome: outcome.index)
+
+
+def warm_up(scenario: Scenario) -> None:
+    """Load or compile the kernels here and now, on this thread, where an interrupt is heard."""
+    from slosh_cli.errors import SloshError
+    from slosh_cli.results.simulate import simulate
+    from slosh_cli.solver.run import Cancelled
+
+    enough = Event()
+    enough.set()
+    try:
+        simulate(scenario, cancel=enough)
+    except (Cancelled, SloshError):
+        return
