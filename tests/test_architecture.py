@@ -105,9 +105,7 @@ def test_modules_and_functions_are_small(module: str) -> None:
     compiled = {"kernel", "njit"}
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            decorators = {
-                ast.unparse(decorator).split("(")[0].split(".")[-1] for decorator in node.decorator_list
-            }
+            decorators = {ast.unparse(decorator).split("(")[0].split(".")[-1] for decorator in node.decorator_list}
             assert node.end_lineno is not None
             length = node.end_lineno - node.lineno + 1
             assert length <= 60 or decorators & compiled, f"{node.name} has {length} lines"

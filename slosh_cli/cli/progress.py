@@ -48,13 +48,17 @@ class RunProgress:
 
     def __call__(self, fraction: float, speed: float) -> None:
         if self._bar is None:
-            if time.monotonic() - self._started < PATIENCE or not sys.stderr.isatty():
+            if time.monotonic() - self._started < PATIENCE or not _somebody_watches():
                 return
             self._bar = _bar()
             self._task = self._bar.add_task(self._description, total=1.0, speed="")
             self._bar.start()
         assert self._task is not None
         self._bar.update(self._task, completed=min(max(fraction, 0.0), 1.0), speed=f"{speed * 3.6:5.1f} km/h")
+
+
+def _somebody_watches() -> bool:
+    return sys.stderr.isatty()
 
 
 def _bar() -> "Progress":

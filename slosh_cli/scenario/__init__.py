@@ -2,6 +2,7 @@
 
 from slosh_cli.scenario.loader import (
     load_any_scenario,
+    load_document,
     load_scenario,
     load_tank_scenario,
     parse_scenario,
@@ -68,6 +69,7 @@ __all__ = [
     "find_packaged",
     "json_schema",
     "load_any_scenario",
+    "load_document",
     "load_scenario",
     "load_tank_scenario",
     "packaged_scenarios",

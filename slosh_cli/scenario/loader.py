@@ -151,6 +151,14 @@ def parse_scenario(text: str, name: str = "scenario") -> Scenario:
     return _finish(Scenario, _parse(text, name), name)
 
 
+def load_document(path: str | Path) -> Document:
+    """A YAML file that is no scenario (a study) as plain data with the line of every value.
+
+    Raises ScenarioError where the text is no YAML; other mistakes are among the document's `problems`.
+    """
+    return _parse(text_of(Path(path)), str(path))
+
+
 def scenario_to_yaml(scenario: Scenario | TankScenario) -> str:
     """The resolved scenario as YAML, every quantity in SI units; it reads back as an equal scenario."""
     data = plain_data(scenario, as_text=True)

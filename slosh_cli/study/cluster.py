@@ -11,6 +11,7 @@ import queue
 import time
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator
+from importlib import import_module
 from itertools import islice
 from statistics import median
 from threading import Event
@@ -26,9 +27,9 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from distributed import Client, Future
-
 Batch = tuple[Stop, ...]
+Future = Any
+"""A future of Dask, which carries no types."""
 
 BATCH_SECONDS: Final = 4.0
 """Work of a batch in s: long beside what the scheduler spends on it, short enough to lose with a worker."""
@@ -68,7 +69,7 @@ class Cluster:
 
     def __init__(self, address: str) -> None:
         try:
-            from distributed import Client
+            self._dask: Any = import_module("distributed")
         except ImportError:
             text = "--cluster needs Dask: python -m pip install 'slosh-cli[cluster]', here and for the workers"
             raise UsageError(text, "--cluster") from None
@@ -76,7 +77,7 @@ class Cluster:
         for name in ("distributed.client", "distributed.comm", "distributed.core"):  # what they say, we say
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
-            self._client: Client = Client(
+            self._client: Any = self._dask.Client(
                 address, timeout=_CONNECT_SECONDS, set_as_default=False, name="slosh", direct_to_workers=False
             )
         except (OSError, ValueError, TimeoutError) as error:
@@ -89,7 +90,9 @@ class Cluster:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._client.close(timeout=2.0)
 
     @property
@@ -100,6 +103,11 @@ class Cluster:
         if not workers:
             return f"the cluster at {self.address}, which has no workers yet"
         return f"{threads} threads of {len(workers)} workers at {self.address}"
+
+    @property
+    def threads(self) -> int:
+        """Threads of all workers there are now, at least one."""
+        return max(int(sum(self._client.nthreads().values())), 1)
 
     def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
         """Outcomes batch by batch, in no particular order. `cancel` gives up what is on its way and ends the iteration.
@@ -158,17 +166,15 @@ class Cluster:
 
     def _received(self, future: Future) -> Iterator[list[Outcome]]:
         """The outcomes of a batch, or the batch sent again stop by stop where it killed its workers."""
-        from distributed import KilledWorker
-
         batch = self._batches.pop(future, ())
         if future.status in ("cancelled", "lost"):
             raise self._lost()
-        error = future.exception() if future.status == "error" else None
+        error: Any = future.exception() if future.status == "error" else None
         if error is None:
             outcomes: list[Outcome] = future.result()
             self._seconds.extend(max(outcome.seconds, 1e-3) for outcome in outcomes)
             yield outcomes
-        elif not isinstance(error, KilledWorker):
+        elif not isinstance(error, self._dask.KilledWorker):
             raise _told(error)
         elif len(batch) > 1:
             for stop in batch:

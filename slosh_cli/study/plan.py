@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace as copy_of
+from dataclasses import dataclass
+from dataclasses import replace as copy_of
 from typing import Any, Final
 
 from slosh_cli.errors import Problem, ScenarioError

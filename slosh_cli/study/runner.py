@@ -29,6 +29,11 @@ class Workers(Protocol):
         """What computes, for people."""
         ...
 
+    @property
+    def threads(self) -> int:
+        """How many stops are computed at a time."""
+        ...
+
     def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
         """Outcomes of the `total` stops as they come, in any order, until all are done or `cancel` is set."""
         ...
@@ -67,7 +72,7 @@ def plan(study: Study, journal: Journal | None, folder: Path) -> Plan:
             found.unsound[index] = error.problems[0].text(study.file)
             continue
         found.keys.append(key)
-        if journal is not None and key in journal and (not study.histories or (folder / history_file(key)).exists()):
+        if journal is not None and _is_done(study, journal, folder, key):
             found.reused += 1
         elif key not in seen:
             found.open.append(index)
@@ -75,15 +80,24 @@ def plan(study: Study, journal: Journal | None, folder: Path) -> Plan:
     return found
 
 
+def _is_done(study: Study, journal: Journal, folder: Path, key: str) -> bool:
+    if key not in journal or not study.histories or (folder / history_file(key)).exists():
+        return key in journal
+    return "steps" not in (journal.answer(key) or {})  # it ended without a result: there is no history to write
+
+
 def answer(study: Study, plan: Plan, journal: Journal, index: int) -> dict[str, Any] | None:
     """The row of a stop, None while it has not been computed."""
     key = plan.keys[index]
     if key is None:
         return without_result(study.conditions(index), plan.unsound[index])
-    return journal.answer(key)
+    row = journal.answer(key)
+    if row is not None and study.histories and "steps" in row:
+        row["history"] = history_file(key)
+    return row
 
 
-def run(
+def run_study(
     study: Study, plan: Plan, journal: Journal, workers: Workers, folder: Path, *, cancel: Event, report: Report
 ) -> int:
     """Compute the open stops of a study, each committed to the journal as it comes; returns how many came.

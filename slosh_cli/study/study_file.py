@@ -1,11 +1,11 @@
 """Studies kept in a file: `base:`, a scenario, and `vary:`, keys of it with the values they take.
 
-    name: fill-and-speed          # default: the file's own name
-    base: paper_80.yaml           # beside the study file, or a packaged scenario by name
-    vary:
-      tank.fill: 0.2:0.9:0.1      # lists and ranges as on the command line,
-      contact.adhesion: [dry, wet]  # or lists of YAML
-    liquid: [modal, rigid]        # default: the scenario's own model and rigid
+name: fill-and-speed          # default: the file's own name
+base: paper_80.yaml           # beside the study file, or a packaged scenario by name
+vary:
+  tank.fill: 0.2:0.9:0.1      # lists and ranges as on the command line,
+  contact.adhesion: [dry, wet]  # or lists of YAML
+liquid: [modal, rigid]        # default: the scenario's own model and rigid
 """
 
 from __future__ import annotations

@@ -26,34 +26,37 @@ def available_cores() -> int:
 
 
 class Threads:
-    """Computes stops on `jobs` threads; a few are in hand at any time, whatever their number."""
+    """Computes stops on `threads` threads; a few are in hand at any time, whatever their number."""
 
-    def __init__(self, jobs: int) -> None:
-        self.jobs = jobs
+    def __init__(self, threads: int) -> None:
+        self.threads = threads
 
     @property
     def words(self) -> str:
         """What computes, for people."""
-        return f"{self.jobs} thread{'s' if self.jobs > 1 else ''}"
+        return f"{self.threads} thread{'s' if self.threads > 1 else ''}"
 
     def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
         """Outcomes as they come, in no particular order. `cancel` gives up the stops in hand and ends the iteration."""
         del total  # only workers far away need to know
         waiting: set[Future[Outcome]] = set()
-        with ThreadPoolExecutor(self.jobs, thread_name_prefix="stop") as pool:
+        with ThreadPoolExecutor(self.threads, thread_name_prefix="stop") as pool:
             try:
                 for stop in stops:
                     waiting.add(pool.submit(solve, stop, cancel))
-                    if len(waiting) >= self.jobs * (1 + _WAITING):
+                    if len(waiting) >= self.threads * (1 + _WAITING):
                         done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                         yield _finished(done, cancel)
                     if cancel.is_set():
                         break
                 while waiting:
+                    if cancel.is_set():
+                        waiting = {future for future in waiting if not future.cancel()}
                     done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                     yield _finished(done, cancel)
             except BaseException:
-                cancel.set()  # the pool waits for its threads: they must not go on for the rest of their stops
+                cancel.set()  # the pool waits for its threads: they must not go on to the end of their stops
+                pool.shutdown(wait=False, cancel_futures=True)
                 raise
 
 

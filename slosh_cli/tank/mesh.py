@@ -23,6 +23,8 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _ELEMENTS_ACROSS = 4.0  # largest element: the root of the area over this
+_ELEMENTS_DOWN = 2.0  # the same for shallow liquids, with the depth
+_MOST_ACROSS = 12.0  # but no smaller than this share of the root of the area
 _GRADING = 0.45  # growth of the element size with distance from where it is kept small
 _BEND = 0.4  # largest element over radius of curvature
 _SIDE = 2.0  # largest element over the length of the side of a polygon it stands on
@@ -59,7 +61,7 @@ def element_size(half: HalfSection, wavenumber: float, held_surface: bool = Fals
     scale = math.sqrt(half.area)
     kept_small = _singular_corners(half, scale, held_surface) + _bends(half) + _short_sides(half, scale)
     return ElementSize(
-        scale / _ELEMENTS_ACROSS,
+        max(min(scale / _ELEMENTS_ACROSS, half.depth / _ELEMENTS_DOWN), scale / _MOST_ACROSS),
         np.array([place for place, _ in kept_small], dtype=np.float64).reshape(-1, 2),
         np.array([size for _, size in kept_small], dtype=np.float64),
         half.depth,

@@ -46,33 +46,33 @@ class EllipticalSection:
         """Height of the section, m."""
         return 2.0 * self.half_height
 
-    def _half_angle(self, depth: float) -> float:
-        """Half the angle the wetted segment of the unit circle subtends at its centre."""
-        return math.acos(1.0 - min(max(depth / self.half_height, 0.0), 2.0))
+    def half_angle(self, depth: float) -> float:
+        """Half the angle, rad, that the wetted part subtends at the centre once the ellipse is drawn as a circle."""
+        return 2.0 * math.asin(math.sqrt(min(max(depth / self.height, 0.0), 1.0)))
 
     def area(self, depth: float) -> float:
         """Wetted area in m^2 at a liquid depth in m."""
-        return self.half_width * self.half_height * _segment_area(self._half_angle(depth))
+        return self.half_width * self.half_height * _segment_area(self.half_angle(depth))
 
     def centroid_height(self, depth: float) -> float:
         """Height of the wetted area's centroid above the lowest point, m."""
-        return self.half_height * (1.0 - _segment_centroid(self._half_angle(depth)))
+        return self.half_height * (1.0 - _segment_centroid(self.half_angle(depth)))
 
     def second_moment(self, depth: float) -> float:
         """Second moment of the wetted area about the horizontal axis through its own centroid, m^4."""
-        angle = self._half_angle(depth)
+        angle = self.half_angle(depth)
         about_centre = (angle - math.sin(4.0 * angle) / 4.0) / 4.0
         about_centroid = about_centre - _segment_area(angle) * _segment_centroid(angle) ** 2
         return self.half_width * self.half_height**3 * max(about_centroid, 0.0)
 
     def surface_width(self, depth: float) -> float:
         """Width of the free surface, m."""
-        return 2.0 * self.half_width * math.sin(self._half_angle(depth))
+        return 2.0 * self.half_width * math.sin(self.half_angle(depth))
 
 
 def _segment_area(angle: float) -> float:
     """Area of the unit circle's segment of half-angle `angle`."""
-    if angle < 0.02:  # the difference below would lose its digits
+    if angle < 0.0:  # the difference below would lose its digits
         return 2.0 / 3.0 * angle**3 * (1.0 - angle**2 / 5.0 + 2.0 * angle**4 / 105.0)
     return angle - math.sin(2.0 * angle) / 2.0
 

@@ -120,7 +120,7 @@ def half_section(section: Section, depth: float) -> HalfSection:
 
 
 def _elliptical_pieces(section: EllipticalSection, depth: float) -> tuple[Piece, ...]:
-    angle = math.acos(1.0 - depth / section.half_height)
+    angle = section.half_angle(depth)
     bottom, contact, middle = (0.0, 0.0), (section.surface_width(depth) / 2.0, depth), (0.0, depth)
     wall = Piece(Side.WALL, bottom, contact, 0.0, angle, (section.half_width, section.half_height))
     return wall, Piece(Side.SURFACE, contact, middle), Piece(Side.SYMMETRY, middle, bottom)

@@ -150,17 +150,20 @@ def test_a_reader_that_goes_away_is_no_error(arguments: str) -> None:
 
 
 def test_a_reader_that_goes_away_does_not_hide_that_a_run_had_no_answer(
-    solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     class Gone(io.StringIO):
-        def write(self, _: str) -> int:
-            raise BrokenPipeError
+        def write(self, text: str) -> int:
+            if text:
+                raise BrokenPipeError
+            return 0
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("slosh_cli.cli.output.close_stdout", lambda: None)
     monkeypatch.setattr(sys, "stdout", Gone())
     solver.answer = unfinished_run
     assert main(["run", str(PAPER), "--no-figures"]) == ExitCode.NO_ANSWER
+    assert "failed on its own account" not in capsys.readouterr().err
 
 
 def test_a_poor_terminal_is_no_error() -> None:

@@ -1,33 +1,41 @@
 """The progress bar: on stderr, for people, and only when there is something to wait for."""
 
+from dataclasses import dataclass
+
 import pytest
 
 from slosh_cli.cli import progress
 from slosh_cli.cli.progress import RunProgress
 
 
+@dataclass
+class World:
+    """The clock, and what stderr leads to."""
+
+    now: float = 0.0
+    terminal: bool = True
+
+
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    now = [0.0]
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(progress.sys.stderr, "isatty", lambda: True, raising=False)
+def world(monkeypatch: pytest.MonkeyPatch) -> World:
+    state = World()
+    monkeypatch.setattr(progress.time, "monotonic", lambda: state.now)
+    monkeypatch.setattr(progress, "_somebody_watches", lambda: state.terminal)
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("TTY_COMPATIBLE", "1")
-    return now
+    return state
 
 
-def test_a_short_run_shows_none(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_short_run_shows_none(world: World, capsys: pytest.CaptureFixture[str]) -> None:
     with RunProgress("stop") as bar:
-        clock[0] = 1.9
+        world.now = 1.9
         bar(0.5, 10.0)
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_long_run_shows_how_far_it_is(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_run_shows_how_far_it_is(world: World, capsys: pytest.CaptureFixture[str]) -> None:
     with RunProgress("stop") as bar:
-        clock[0] = 2.1
-        monkey = progress.sys.stderr
-        monkey.isatty = lambda: True  # type: ignore[method-assign]
+        world.now = 2.1
         bar(0.25, 10.0)
     out, err = capsys.readouterr()
     assert out == ""
@@ -35,9 +43,13 @@ def test_a_long_run_shows_how_far_it_is(clock: list[float], capsys: pytest.Captu
     assert "36.0 km/h" in err
 
 
-def test_a_file_for_stderr_gets_none(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
-    progress.sys.stderr.isatty = lambda: False  # type: ignore[method-assign]
+def test_a_file_for_stderr_is_nobody_watching(capsys: pytest.CaptureFixture[str]) -> None:
+    assert progress._somebody_watches() is False
+
+
+def test_without_anybody_watching_there_is_none(world: World, capsys: pytest.CaptureFixture[str]) -> None:
+    world.terminal = False
     with RunProgress("stop") as bar:
-        clock[0] = 5.0
+        world.now = 5.0
         bar(0.25, 10.0)
     assert capsys.readouterr() == ("", "")

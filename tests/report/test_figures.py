@@ -152,8 +152,8 @@ def test_text_that_looks_like_mathematics_stays_text(liquid: Result, tmp_path: P
     run = replace(liquid, scenario=scenario, warnings=(r"costs $5 and \alpha$",))
     draw_run(run, tmp_path, formats=("svg",))
     text = (tmp_path / "slosh.svg").read_text(encoding="utf-8")
-    assert r"a$b_{$\frac: V₀" in text
-    assert r"costs $5 and \alpha$" in text
+    assert r">a$b_{$\frac: V₀" in text
+    assert r">Warning: costs $5 and \alpha$</text>" in text
 
 
 def test_a_run_of_a_single_row_can_be_drawn(liquid: Result, tmp_path: Path) -> None:

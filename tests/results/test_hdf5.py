@@ -66,9 +66,7 @@ def test_plain_h5py_finds_channels_with_units(result: Result, file: Path) -> Non
         assert plain["time"].attrs["units"] == "s"
 
 
-def test_the_scenario_in_the_file_is_the_scenario_of_the_run(
-    result: Result, file: Path, tmp_path: Path
-) -> None:
+def test_the_scenario_in_the_file_is_the_scenario_of_the_run(result: Result, file: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.yaml"
     again.write_text(read_history(file).scenario_text, encoding="utf-8")
     assert load_scenario(again) == result.scenario

@@ -51,9 +51,7 @@ def test_a_run_that_did_not_stop_says_why_and_has_no_distance(unfinished: Result
 
 
 def test_largest_unloading_is_that_of_the_wheel_that_loses_most(result: Result) -> None:
-    run = replace(
-        result, static_wheel_load_N=(100.0, 100.0, 50.0, 100.0), min_wheel_load_N=(90.0, 80.0, 30.0, 95.0)
-    )
+    run = replace(result, static_wheel_load_N=(100.0, 100.0, 50.0, 100.0), min_wheel_load_N=(90.0, 80.0, 30.0, 95.0))
     assert run.max_wheel_unloading == pytest.approx(0.4)
 
 
@@ -109,6 +107,4 @@ def test_every_status_but_stopped_tells_the_remedy() -> None:
 def test_a_result_survives_pickling(result: Result) -> None:
     copy = pickle.loads(pickle.dumps(result))
     assert copy.summary() == result.summary()
-    np.testing.assert_array_equal(
-        copy.channels["wheel_1_normal_force"], result.channels["wheel_1_normal_force"]
-    )
+    np.testing.assert_array_equal(copy.channels["wheel_1_normal_force"], result.channels["wheel_1_normal_force"])

@@ -61,7 +61,6 @@ def test_order_2_on_the_stiff_wagon_with_slosh(stiff):
         got_x[0] -= 20.0 * END
         errors.append([np.abs(got_x - exact_x).max(), np.abs(got_v - exact_v).max()])
     orders = [np.log2(np.array(coarse) / fine) for coarse, fine in pairwise(errors)]
-    print(errors, np.abs(exact_x).max(), np.abs(exact_v).max(),orders)
     assert np.array(orders) == pytest.approx(2.0, abs=0.1)
     assert errors[-1][0] < 1e-3 * np.abs(exact_x).max()
 
@@ -146,7 +145,6 @@ def test_order_2_on_the_moving_rail(shipped):
         start = started(model, rest, rest, shape, 0 * shape)
         point = march(linear_model(model, step, end), start, step)
         errors.append([np.abs(point.rail - exact_y).max(), np.abs(point.rail_rate - exact_rate).max()])
-    print(errors, np.abs(exact_y).max(), np.abs(exact_rate).max())
     orders = [np.log2(np.array(coarse) / fine) for coarse, fine in pairwise(errors)]
     assert np.array(orders) == pytest.approx(2.0, abs=0.1)
 

@@ -83,8 +83,9 @@ def test_depths_beyond_the_section_are_empty_or_full(section, width, breaks):
 
 def test_a_nearly_empty_ellipse_keeps_its_digits():
     section = EllipticalSection(1.0, 1.0)
-    depth = 1e-8  # a parabola: area 4/3 sqrt(2) d^1.5, centroid 3/5 d
-    assert section.area(depth) == pytest.approx(4.0 / 3.0 * math.sqrt(2.0) * depth**1.5, rel=1e-7)
+    depth = 1e-12  # a parabola
+    assert section.area(depth) == pytest.approx(4.0 / 3.0 * math.sqrt(2.0) * depth**1.5, rel=1e-10, abs=0.0)
+    assert section.surface_width(depth) == pytest.approx(2.0 * math.sqrt(2.0 * depth), rel=1e-10, abs=0.0)
 
 
 def test_many_sided_polygon_tends_to_the_circle_with_the_square_of_the_sides():

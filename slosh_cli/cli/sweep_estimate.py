@@ -1,0 +1,60 @@
+"""How long a study will take, from what stops took before or from a few of them tried."""
+
+import time
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from slosh_cli.study.journal import Journal
+    from slosh_cli.study.plan import Study
+    from slosh_cli.study.runner import Plan
+
+SAMPLES: Final = 3
+PATIENCE: Final = 2.0
+"""Seconds a tried stop may take; a longer one is judged by how far it came."""
+TYPICAL: Final = 0.15
+"""What a stop of the paper's wagon takes, s of one thread, for want of anything better."""
+
+
+class _Deadline:
+    """Set once its time is over; keeps what fraction of the stop was done by then."""
+
+    def __init__(self) -> None:
+        self.began = time.perf_counter()
+        self.fraction = 0.0
+
+    def is_set(self) -> bool:
+        return time.perf_counter() - self.began > PATIENCE
+
+    def progress(self, fraction: float, _speed: float) -> None:
+        self.fraction = fraction
+
+
+def seconds_per_stop(study: "Study", planned: "Plan", journal: "Journal | None") -> float:
+    """Seconds of one thread for one of the stops that are still open."""
+    known = journal.mean_seconds() if journal is not None and planned.open else None
+    if known is not None:
+        return known
+    from slosh_cli.compiled import is_cached
+
+    if not planned.open or not is_cached():
+        return TYPICAL
+    count = min(SAMPLES, len(planned.open))
+    chosen = [planned.open[(2 * k + 1) * len(planned.open) // (2 * count)] for k in range(count)]
+    _try(study, chosen[0])  # loads the kernels
+    return sum(_try(study, index) for index in chosen) / count
+
+
+def _try(study: "Study", index: int) -> float:
+    """Seconds that one stop takes, or would take."""
+    from slosh_cli.errors import SloshError
+    from slosh_cli.results.simulate import simulate
+    from slosh_cli.solver.run import Cancelled
+
+    deadline = _Deadline()
+    try:
+        simulate(study.stop(index).scenario, progress=deadline.progress, cancel=deadline)
+    except Cancelled:
+        return PATIENCE / max(deadline.fraction, 1e-3)
+    except SloshError:
+        pass
+    return time.perf_counter() - deadline.began

@@ -1,0 +1,100 @@
+"""What the figures of a study show: which axis lies along the bottom, which makes panels, which makes figures."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.scenario.schema_run import ADHESIONS
+from slosh_cli.study.axis import Axis
+from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
+from slosh_cli.study.table import column_of
+
+if TYPE_CHECKING:
+    from slosh_cli.report.study_figures import Mark, Page
+
+NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
+_UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
+_COLUMNS: Final[Mapping[str, str]] = {SPEED: "v0_km_h", TORQUE: "torque_kN_m", LIQUID: "liquid"}
+
+
+def name_of(axis: Axis) -> str:
+    """What people call an axis."""
+    return NAMES.get(axis.key, axis.key)
+
+
+def unit_of(axis: Axis) -> str:
+    """The unit of an axis in tables and figures."""
+    return _UNITS.get(axis.key, axis.unit)
+
+
+def column(axis: Axis) -> str:
+    """The column of the table that holds an axis's value."""
+    return _COLUMNS.get(axis.key) or column_of(axis)
+
+
+def text_of(axis: Axis, row: Mapping[str, Any]) -> str:
+    """The value of an axis in a row, with its unit."""
+    value = row[column(axis)]
+    return f"{value:g} {unit_of(axis)}".rstrip() if isinstance(value, float) else str(value)
+
+
+def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
+    """The figures of a study; none where nothing but the load varies."""
+    from slosh_cli.report.study_figures import MOST_PANELS, Page, Panel
+
+    varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
+    if not varied:
+        return []
+    along = next((axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1])
+    others = [axis for axis in varied if axis is not along]
+    beside = next(
+        (axis for axis in sorted(others, key=lambda axis: axis.key != SPEED) if len(axis.values) <= MOST_PANELS), None
+    )
+    apart = [axis for axis in others if axis is not beside]
+    found: dict[str, dict[str, Panel]] = {}
+    ticks: dict[Any, int] = {}
+    for row in rows:
+        page = ", ".join(f"{name_of(axis)} {text_of(axis, row)}" for axis in apart)
+        title = _panel_title(beside, row)
+        panel = found.setdefault(page, {}).setdefault(title, Panel(title))
+        panel.curves.setdefault(str(row["liquid"]), []).append(_mark(along, row, ticks))
+    for panel in (panel for panels in found.values() for panel in panels.values()):
+        for marks in panel.curves.values():
+            marks.sort(key=lambda mark: mark.x)
+    unit = unit_of(along)
+    best = "most effective torque" if along.key == TORQUE else "shortest"
+    label = f"{name_of(along)} / {unit}" if unit else name_of(along)
+    return [
+        Page("Braking distance", _conditions(study, page), label, unit, best, list(panels.values()), list(ticks))
+        for page, panels in found.items()
+    ]
+
+
+def _panel_title(beside: Axis | None, row: Mapping[str, Any]) -> str:
+    if beside is None:
+        return f"{row['v0_km_h']:g} km/h"
+    return text_of(beside, row) if beside.key in _UNITS else f"{name_of(beside)} {text_of(beside, row)}"
+
+
+def _conditions(study: Study, page: str) -> str:
+    """The study's name and what is the same in all of a figure."""
+    fixed = [axis for axis in study.axes if len(axis.values) == 1 and axis.key not in (LIQUID, SPEED)]
+    words = [page] if page else []
+    words += [f"{name_of(axis)} {axis.values[0]}" for axis in fixed]
+    keys = {axis.key for axis in study.axes}
+    if TORQUE not in keys:
+        words.append(f"{study.base.braking.torque / 1e3:g} kN m per wheel")
+    tank = study.base.tank
+    words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
+    words += [f"fill {tank.fill:g}"] if "tank.fill" not in keys else []
+    rail = next((name for name, adhesion in ADHESIONS.items() if adhesion == study.base.contact.adhesion), "")
+    words += [f"{rail} rail"] if rail and not any(key.startswith("contact.adhesion") for key in keys) else []
+    return f"{study.name}: {', '.join(words)}"
+
+
+def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> "Mark":
+    from slosh_cli.report.study_figures import Mark
+    from slosh_cli.results.result import Status
+
+    value = row[column(along)]
+    x = value if isinstance(value, float) else float(ticks.setdefault(value, len(ticks)))
+    return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("within_linear_theory")))

@@ -1,0 +1,164 @@
+"""The terminal summary of a study."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.cli.output import say, show
+from slosh_cli.cli.sweep_figures import name_of, text_of, unit_of
+from slosh_cli.study.axis import Axis
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from slosh_cli.study.claims import Verdict
+
+Row = Mapping[str, Any]
+
+MOST_LINES: Final = 60
+"""Points of a table on the terminal; a larger study is read from its file."""
+_EXAMPLES: Final = 4
+"""Stops named in a group of failures."""
+_FEWEST: Final = 3
+"""Torques from which on the most effective one is worth a word."""
+_NUMBER: Final = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", re.IGNORECASE)
+
+
+def grid_words(study: Study) -> str:
+    """``48 stops: 2 speeds, ...``: how many values each axis has."""
+    counts = ", ".join(f"{name_of(axis)} {_span(axis)}" for axis in study.axes)
+    return f"{study.size} stops: {counts}"
+
+
+def _span(axis: Axis) -> str:
+    if len(axis.values) <= 3:
+        return " | ".join(axis.values)
+    return f"{axis.values[0]} to {axis.values[-1]} ({len(axis.values)} values)"
+
+
+def show_study(study: Study, rows: Iterable[Row], verdicts: Sequence["Verdict"]) -> None:
+    """Print the table, the most effective torques, what became of the paper's claims and the failures, to stdout."""
+    rows = list(rows) if _lines(study) <= MOST_LINES else []
+    if rows:
+        show(_table(study, rows))
+        say(_legend(rows))
+        for line in _best_lines(study, rows):
+            say(line)
+    for verdict in verdicts:
+        say(f"\n{verdict.claim}: {verdict.finding}\n  the paper: {verdict.text}\n  here: {verdict.evidence}")
+
+
+def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
+    """What went wrong, grouped by cause: how often, why, where."""
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        if row["status"] != "stopped":
+            cause = _NUMBER.sub("#", str(row.get("reason") or ""))
+            groups.setdefault((str(row["status"]), cause), []).append(
+                {"where": _where(study, row), "reason": row.get("reason")}
+            )
+    lines = []
+    for (status, _), members in sorted(groups.items(), key=lambda entry: -len(entry[1])):
+        lines.append(f"{len(members)} x {status}: {members[0]['reason'] or 'no reason was given'}")
+        more = f" and {len(members) - _EXAMPLES} more" if len(members) > _EXAMPLES else ""
+        lines.append(f"    at {'; '.join(member['where'] for member in members[:_EXAMPLES])}{more}")
+    return lines
+
+
+def _where(study: Study, row: Row) -> str:
+    return ", ".join(text_of(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
+
+
+def _lines(study: Study) -> int:
+    """Points of the grid, liquid and solid counted as one."""
+    models = next((len(axis.values) for axis in study.axes if axis.key == LIQUID), 1)
+    return study.size // models
+
+
+def _told(study: Study) -> list[Axis]:
+    """The axes that have a column on the terminal."""
+    return [axis for axis in study.axes if axis.key != LIQUID and (len(axis.values) > 1 or axis.key in (SPEED, TORQUE))]
+
+
+def _table(study: Study, rows: Sequence[Row]) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    axes = _told(study)
+    models = list(dict.fromkeys(str(row["liquid"]) for row in rows))
+    liquids = [model for model in models if model != SOLID]
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.title, table.title_justify, table.title_style = f"{study.name}: braking distance", "left", "bold"
+    for axis in axes:
+        unit = unit_of(axis)
+        table.add_column(f"{name_of(axis)} / {unit}" if unit else name_of(axis), justify="right", max_width=16)
+    for model in models:
+        table.add_column(f"{model} / m", justify="right")
+    for model in liquids if SOLID in models else []:
+        table.add_column("ratio" if len(liquids) == 1 else f"{model} / {SOLID}", justify="right")
+    best = _best(rows, _curve_of(study))
+    for _, group in groupby(rows, key=lambda row: tuple(text_of(axis, row) for axis in axes)):
+        point = {str(row["liquid"]): row for row in group}
+        first = next(iter(point.values()))
+        cells = [text_of(axis, first).removesuffix(unit_of(axis)).strip() for axis in axes]
+        cells += [_distance(point.get(model), best) for model in models]
+        cells += [_ratio(point.get(model)) for model in liquids if SOLID in models]
+        table.add_row(*cells)
+    return table
+
+
+def _distance(row: Row | None, best: Sequence[Row]) -> str:
+    if row is None:
+        return "-"
+    distance = row.get("braking_distance_m")
+    if distance is None:
+        return str(row["status"])
+    outside = "" if row.get("within_linear_theory") else "o"
+    mark = "*" if any(row is one for one in best) else ""
+    return f"{mark}{outside} {distance:.2f}".strip()
+
+
+def _ratio(row: Row | None) -> str:
+    ratio = None if row is None else row.get("ratio_to_solid")
+    return "-" if ratio is None else f"{ratio:.4f}"
+
+
+def _legend(rows: Sequence[Row]) -> str:
+    words = "* shortest of its curve"
+    outside = any(row.get("braking_distance_m") is not None and not row.get("within_linear_theory") for row in rows)
+    return words + ("   o outside linear theory: the surface reaches the roof or the bottom" if outside else "")
+
+
+def _curve_of(study: Study) -> list[Axis]:
+    """The axes that tell one curve from another: all but the torque, or the speed where the torque is fixed."""
+    varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
+    along = next(
+        (axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1] if varied else None
+    )
+    return [axis for axis in study.axes if axis is not along]
+
+
+def _best(rows: Sequence[Row], axes: Sequence[Axis]) -> list[Row]:
+    """The shortest stop of every curve."""
+    curves: dict[tuple[str, ...], Row] = {}
+    for row in rows:
+        if row.get("braking_distance_m") is None:
+            continue
+        key = tuple(text_of(axis, row) for axis in axes)
+        if key not in curves or row["braking_distance_m"] < curves[key]["braking_distance_m"]:
+            curves[key] = row
+    return list(curves.values())
+
+
+def _best_lines(study: Study, rows: Sequence[Row]) -> list[str]:
+    torques = next((axis for axis in study.axes if axis.key == TORQUE), None)
+    if torques is None or len(torques.values) < _FEWEST:
+        return []
+    axes = [axis for axis in _curve_of(study) if len(axis.values) > 1]
+    lines = ["most effective torque:"]
+    for row in _best(rows, _curve_of(study)):
+        where = ", ".join(text_of(axis, row) for axis in axes)
+        lines.append(f"  {where}: {row['torque_kN_m']:g} kN m, {row['braking_distance_m']:.2f} m")
+    return lines

@@ -1,0 +1,245 @@
+"""Figures of a study, as PNG and SVG: braking distance against what varies, liquid beside solid (the paper's Figure 3).
+
+A stop without an answer has no distance: it stands as a mark of its own at the top of its panel, and no line leads to
+it. A stop outside linear theory has a hollow marker and hangs on a dotted line.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from slosh_cli.report import figures
+from slosh_cli.report.figures import FORMATS, INK, MUTED, STYLE
+from slosh_cli.results.files import replacing
+from slosh_cli.results.result import Status
+
+NAME: Final = "braking_distance"
+SOLID: Final = "rigid"
+MOST_PANELS: Final = 6
+MOST_PAGES: Final = 12
+
+LOOKS: Final[Sequence[dict[str, Any]]] = (
+    {"color": "#08306b", "marker": "o", "linestyle": "-", "markersize": 6.5},
+    {"color": "#c1440e", "marker": "s", "linestyle": (0, (5, 1.5)), "markersize": 9.0},
+    {"color": "#4a98c9", "marker": "^", "linestyle": (0, (6, 2, 1, 2)), "markersize": 7.0},
+    {"color": "#7a7a7a", "marker": "D", "linestyle": (0, (3, 1.5, 1, 1.5, 1, 1.5)), "markersize": 6.0},
+)
+OUTSIDE: Final = (0, (1, 1.8))
+"""Line style of the way to and from a stop outside linear theory."""
+WITHOUT_ANSWER: Final = {Status.OVERTURNED: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One stop: its place `x` on the axis, braking distance in m (None without an answer), how it ended."""
+
+    x: float
+    distance: float | None
+    status: Status
+    within_linear_theory: bool
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One panel: its title and, by model of the load, its stops in the order of `x`."""
+
+    title: str
+    curves: dict[str, list[Mark]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Page:
+    """One figure: panels that share the horizontal axis `label`; `ticks` name its places where it has no numbers.
+
+    `best` is what the lowest point of a curve is called, `unit` that of the horizontal axis.
+    """
+
+    title: str
+    conditions: str
+    label: str
+    unit: str
+    best: str
+    panels: Sequence[Panel]
+    ticks: Sequence[str] = ()
+
+
+def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
+    """Draw one figure per page into `folder`, `braking_distance` and a number where there are several.
+
+    Returns the files. Each appears whole or not at all. Raises FileError when one cannot be written.
+    """
+    files = []
+    with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
+        for number, page in enumerate(pages, start=1):
+            figure = braking_distance(page)
+            name = NAME if len(pages) == 1 else f"{NAME}_{number}"
+            for suffix in formats:
+                file = folder / f"{name}.{suffix}"
+                with replacing(file) as temporary:
+                    figure.savefig(temporary, format=suffix, metadata={"Date": None} if suffix == "svg" else None)
+                files.append(file)
+    return files
+
+
+def braking_distance(page: Page) -> Figure:
+    """Braking distance against what varies, one panel beside the other, one curve per model of the load."""
+    columns = min(len(page.panels), 3 if len(page.panels) != 4 else 2)
+    lines = math.ceil(len(page.panels) / columns)
+    width, height = max(5.2 * columns, 7.0), 4.6 * lines + 1.75
+    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION)
+    figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
+    words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
+    figure.text(0.014, 1.0 - 0.5 / height, words, fontsize=12.5, color=MUTED, va="top", parse_math=False)
+    figure.set_layout_engine("constrained", rect=(0.008, 0.006, 0.984, 1.0 - 1.35 / height))
+    grid = figure.subplots(lines, columns, squeeze=False)
+    panels = grid.ravel()
+    looks = _looks(page)
+    for axes, panel in zip(panels, page.panels, strict=False):
+        _draw_panel(axes, page, panel, looks)
+    for axes in panels[len(page.panels) :]:
+        axes.set_axis_off()
+    for axes in grid[:, 0]:
+        axes.set_ylabel("braking distance / m")
+    figure.legend(
+        handles=_legend(page, looks), loc="upper left", ncols=6, columnspacing=1.5, handletextpad=0.6,
+        bbox_to_anchor=(0.006, 1.0 - 0.82 / height), borderaxespad=0.0,
+    )  # fmt: skip
+    return figure
+
+
+def _looks(page: Page) -> dict[str, dict[str, Any]]:
+    """Look of every model of the load; the solid has the second one wherever it stands in the list."""
+    models = list(dict.fromkeys(model for panel in page.panels for model in panel.curves))
+    others = iter([LOOKS[0], *LOOKS[2:]] * len(models))
+    return {model: LOOKS[1] if model == SOLID else next(others) for model in models}
+
+
+def _draw_panel(axes: Axes, page: Page, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
+    for model, marks in sorted(panel.curves.items(), key=lambda curve: curve[0] != SOLID):  # the solid lies below
+        _draw_curve(axes, marks, looks[model])
+        _draw_unanswered(axes, marks, looks[model])
+    _scale(axes, panel)
+    for model, marks in panel.curves.items():
+        others = [mark for other, found in panel.curves.items() if other != model for mark in found]
+        _mark_best(axes, page, marks, looks[model], others)
+    axes.set_title(panel.title, fontsize=13, fontweight="bold", loc="left", color=INK)
+    axes.set_xlabel(page.label)
+    if page.ticks:
+        axes.set_xticks(range(len(page.ticks)), list(page.ticks))
+    places = [mark.x for marks in panel.curves.values() for mark in marks]
+    room = 0.05 * (max(places) - min(places)) or 0.5
+    axes.set_xlim(min(places) - room, max(places) + room)
+
+
+def _draw_curve(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None:
+    """Lines between neighbours that both have an answer, and the markers: hollow outside linear theory."""
+    color = look["color"]
+    for within, style, width in ((True, look["linestyle"], 1.8), (False, OUTSIDE, 1.5)):
+        axes.plot(*_way(marks, within=within), color=color, linestyle=style, linewidth=width, zorder=2)
+        places = [
+            (mark.x, mark.distance)
+            for mark in marks
+            if mark.distance is not None and mark.within_linear_theory == within
+        ]
+        axes.plot(
+            [x for x, _ in places], [distance for _, distance in places], marker=look["marker"], color=color,
+            markerfacecolor=color if within else "white", markersize=look["markersize"], markeredgewidth=1.5,
+            linestyle="none", zorder=3,
+        )  # fmt: skip
+
+
+def _way(marks: Sequence[Mark], *, within: bool) -> tuple[list[float], list[float]]:
+    """The line through neighbours that both lie within linear theory, or through the others; NaN where it breaks."""
+    x: list[float] = []
+    y: list[float] = []
+    for first, second in pairwise(marks):
+        if first.distance is None or second.distance is None:
+            continue
+        if (first.within_linear_theory and second.within_linear_theory) == within:
+            if not x or x[-1] != first.x:
+                x += [math.nan, first.x]
+                y += [math.nan, first.distance]
+            x.append(second.x)
+            y.append(second.distance)
+    return x, y
+
+
+def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None:
+    for mark in marks:
+        if mark.distance is None:
+            axes.plot(
+                [mark.x], [0.965], marker=WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
+                markeredgewidth=2.2, linestyle="none", transform=axes.get_xaxis_transform(), zorder=4,
+            )  # fmt: skip
+
+
+def _scale(axes: Axes, panel: Panel) -> None:
+    """A logarithmic axis where distances differ a lot: on it, a ratio has the same length everywhere."""
+    found = [mark.distance for marks in panel.curves.values() for mark in marks if mark.distance]
+    if not found:
+        axes.text(0.5, 0.5, "no stop has an answer", transform=axes.transAxes, ha="center", color=MUTED)
+        axes.set_yticks([])
+        return
+    low, high = min(found), max(found)
+    if high / low < 1.6:
+        span = max(high - low, 0.02 * high)
+        axes.set_ylim(low - 0.25 * span, high + 0.25 * span)
+        return
+    axes.set_yscale("log")
+    axes.set_ylim(low * (low / high) ** 0.22, high * (high / low) ** 0.14)
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0), numticks=20))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(axis="y", which="minor", length=0)
+
+
+def _mark_best(axes: Axes, page: Page, marks: Sequence[Mark], look: dict[str, Any], others: Sequence[Mark]) -> None:
+    """Ring and name the lowest point of a curve, below it where no other curve is in the way."""
+    answered = [(mark.distance, mark.x) for mark in marks if mark.distance is not None]
+    if len(answered) < 2:
+        return
+    distance, x = min(answered)
+    axes.plot(
+        [x], [distance], marker="o", markersize=15.0, markerfacecolor="none", color=look["color"],
+        markeredgewidth=1.6, linestyle="none", zorder=4,
+    )  # fmt: skip
+    below = not any(mark.x == x and mark.distance is not None and mark.distance < distance for mark in others)
+    place = page.ticks[round(x)] if page.ticks else f"{x:g} {page.unit}".rstrip()
+    axes.annotate(
+        f"{place}\n{distance:.4g} m", (x, distance), xytext=(0, -13 if below else 13), textcoords="offset points",
+        ha="center", va="top" if below else "bottom", color=look["color"], fontsize=11.5, linespacing=1.15, zorder=5,
+    )  # fmt: skip
+
+
+def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
+    """What the lines and markers mean, as far as they occur."""
+    handles = [_key(_name(model), **look, linewidth=1.8) for model, look in looks.items()]
+    marks = [mark for panel in page.panels for marks in panel.curves.values() for mark in marks]
+    if any(mark.distance is not None and not mark.within_linear_theory for mark in marks):
+        look = {"marker": "o", "markerfacecolor": "white", "markeredgewidth": 1.5, "markersize": 7.0}
+        handles.append(_key("outside linear theory", linestyle=OUTSIDE, **look))
+    for status in sorted({mark.status for mark in marks if mark.distance is None}):
+        look = {"marker": WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
+        handles.append(_key(str(status), linestyle="none", **look))
+    ring = {"marker": "o", "markerfacecolor": "none", "markersize": 13.0, "markeredgewidth": 1.6}
+    return [*handles, _key(page.best, linestyle="none", **ring)]
+
+
+def _name(model: str) -> str:
+    return "equivalent solid" if model == SOLID else f"liquid ({model})"
+
+
+def _key(label: str, **look: Any) -> Line2D:
+    return Line2D([], [], **{"color": INK, **look}, label=label)

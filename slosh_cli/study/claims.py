@@ -1,0 +1,168 @@
+"""What the paper says of its Figure 3, held against a study of its wagon."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, Final
+
+from slosh_cli.scenario import Scenario, replace
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+
+SPEEDS: Final = (80.0, 160.0)
+"""The speeds of Figure 3, km/h."""
+OPTIMUM: Final = (15.0, 20.0)
+"""Where the paper sees the most effective torque, kN m."""
+LARGE_TORQUE: Final = 15.0
+"""From here on, in kN m, a torque counts as large: the upper half of the figure's range."""
+ABOUT_15_PERCENT: Final = (1.10, 1.20)
+"""What we take "about 15 % longer" for."""
+NAMED_POINT: Final = (160.0, 20.0)
+"""The speed in km/h and the torque in kN m of that claim."""
+
+
+class Finding(StrEnum):
+    """Whether a claim holds."""
+
+    HOLDS = "holds"
+    IN_PART = "holds in part"
+    FAILS = "does not hold"
+    OPEN = "no answer"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A claim of the paper, whether it holds here, and the figures that say so."""
+
+    claim: str
+    text: str
+    finding: Finding
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Point:
+    """One stop of the figure: braking distance in m, None without an answer."""
+
+    distance: float | None
+    status: str
+    within_linear_theory: bool
+
+
+Curve = dict[float, Point]
+"""Torque in kN m -> stop."""
+
+
+def applies(study: Study, paper: Scenario) -> bool:
+    """Whether the study is the paper's Figure 3: its wagon, its two speeds, several torques, liquid and solid."""
+    axes = {axis.key: axis for axis in study.axes}
+    if any(len(axis.values) > 1 and key not in (SPEED, TORQUE, LIQUID) for key, axis in axes.items()):
+        return False
+    if SPEED not in axes or TORQUE not in axes or not {"modal", SOLID} <= set(axes[LIQUID].values):
+        return False
+    speeds = {study.conditions(index)["v0_km_h"] for index in range(study.size)}
+    return set(SPEEDS) <= speeds and len(axes[TORQUE].values) > 1 and _same_wagon(study.base, paper)
+
+
+def _same_wagon(base: Scenario, paper: Scenario) -> bool:
+    tank = replace(base, {LIQUID: str(paper.tank.liquid.model)}).tank
+    return (base.wagon, tank, base.track, base.contact) == (paper.wagon, paper.tank, paper.track, paper.contact)
+
+
+def verdicts(rows: Iterable[Mapping[str, Any]]) -> list[Verdict]:
+    """The claims about Figure 3, from the rows of a study's table."""
+    curves: dict[tuple[float, str], Curve] = {}
+    for row in rows:
+        point = Point(row.get("braking_distance_m"), str(row["status"]), bool(row.get("within_linear_theory")))
+        curves.setdefault((row["v0_km_h"], row["liquid"]), {})[row["torque_kN_m"]] = point
+    return [_optimum(curves), _longer(curves), _fifteen_percent(curves)]
+
+
+def most_effective(curve: Curve) -> tuple[float, Point] | None:
+    """The torque with the shortest braking distance, and that stop; None where no stop has an answer."""
+    answered = [(point.distance, torque, point) for torque, point in curve.items() if point.distance is not None]
+    if not answered:
+        return None
+    _, torque, point = min(answered, key=lambda entry: entry[:2])
+    return torque, point
+
+
+def _optimum(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+    found: list[bool | None] = []
+    parts: list[str] = []
+    for speed in SPEEDS:
+        for liquid in ("modal", SOLID):
+            curve = curves.get((speed, liquid), {})
+            best = most_effective(curve)
+            lost = [f"{torque:g}" for torque, point in curve.items() if point.distance is None]
+            gaps = f"; without an answer at {', '.join(lost)} kN m" if lost else ""
+            if best is None:
+                parts.append(f"{speed:g} km/h {liquid}: no stop has an answer")
+                found.append(None)
+                continue
+            torque, point = best
+            where = "" if point.within_linear_theory else ", outside linear theory"
+            parts.append(f"{speed:g} km/h {liquid}: {torque:g} kN m ({point.distance:.1f} m{where}){gaps}")
+            found.append(OPTIMUM[0] <= torque <= OPTIMUM[1])
+    text = "the most effective torque lies between 15 and 20 kN m at 80 and at 160 km/h"
+    return Verdict("fig3-optimum", text, _overall(found), ". ".join(parts))
+
+
+def _longer(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+    ratios: dict[tuple[float, float], float] = {}
+    for speed in SPEEDS:
+        solid = curves.get((speed, SOLID), {})
+        for torque, point in curves.get((speed, "modal"), {}).items():
+            other = solid[torque].distance if torque in solid else None
+            if point.distance is not None and other is not None:
+                ratios[speed, torque] = point.distance / other
+    text = "liquid increases the braking distance, most at high speed and/or large torque"
+    if not ratios:
+        return Verdict("fig3-longer", text, Finding.OPEN, "no pair of stops has both answers")
+    longer = [place for place, ratio in ratios.items() if ratio > 1.0]
+    most = max(ratios, key=lambda place: ratios[place])
+    large = most[0] == max(SPEEDS) or most[1] >= LARGE_TORQUE
+    shorter = ", ".join(f"{speed:g} km/h {torque:g} kN m" for speed, torque in ratios if ratios[speed, torque] <= 1.0)
+    evidence = (
+        f"longer at {len(longer)} of {len(ratios)} points with both answers"
+        + (f" (not at {shorter})" if shorter else "")
+        + f". Most at {most[0]:g} km/h {most[1]:g} kN m: {_percent(ratios[most])}"
+    )
+    return Verdict("fig3-longer", text, _overall([len(longer) == len(ratios), large]), evidence)
+
+
+def _fifteen_percent(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+    text = "about 15 % longer at 160 km/h and 20 kN m"
+    speed, torque = NAMED_POINT
+    pair = [curves.get((speed, liquid), {}).get(torque) for liquid in ("modal", SOLID)]
+    if None in pair:
+        return Verdict("fig3-15-percent", text, Finding.OPEN, "the study has no such pair of stops")
+    liquid, solid = (point for point in pair if point is not None)
+    if liquid.distance is None or solid.distance is None:
+        evidence = f"liquid: {_told(liquid)}, solid: {_told(solid)}"
+        return Verdict("fig3-15-percent", text, Finding.OPEN, evidence)
+    ratio = liquid.distance / solid.distance
+    low, high = ABOUT_15_PERCENT
+    finding = Finding.HOLDS if low <= ratio <= high else Finding.FAILS
+    evidence = f"liquid: {_told(liquid)}, solid: {_told(solid)}, {_percent(ratio)}"
+    return Verdict("fig3-15-percent", text, finding, evidence)
+
+
+def _told(point: Point) -> str:
+    if point.distance is None:
+        return point.status
+    return f"{point.distance:.1f} m{'' if point.within_linear_theory else ' (outside linear theory)'}"
+
+
+def _percent(ratio: float) -> str:
+    return f"{abs(100.0 * (ratio - 1.0)):.1f} % {'longer' if ratio >= 1.0 else 'shorter'}"
+
+
+def _overall(parts: Iterable[bool | None]) -> Finding:
+    known = [part for part in parts if part is not None]
+    if not known:
+        return Finding.OPEN
+    if all(known):
+        return Finding.HOLDS
+    return Finding.IN_PART if any(known) else Finding.FAILS

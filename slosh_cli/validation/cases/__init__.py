@@ -1,0 +1,1 @@
+"""One module per case: a function `compute(data)` that returns rows and a chart."""
