@@ -23,6 +23,7 @@ from slosh_cli.solver.record import record_row, step_extremes
 from slosh_cli.solver.stage import EVENTS, prepare_stage, solve_stage
 from slosh_cli.solver.state import (
     INITIAL_KINETIC,
+    LAST_ERROR,
     NEXT_OUTPUT,
     NEXT_STEP,
     ONSET_POSITION,
@@ -49,6 +50,8 @@ SHORTEST_STEP = 1e-9
 MOST_STALLED = 200
 """Events in a row without time passing that end a run."""
 GROWTH = 4.0
+INTEGRAL, PROPORTIONAL = 0.7 / 3.0, 0.3 / 3.0
+"""Exponents of the step control for a local error of order 3: K. Gustafsson, ACM TOMS 17 (1991) 533-554."""
 RESTART_STEP = 1e-3
 """First step after a discontinuity, s; error control takes it from there."""
 
@@ -234,8 +237,10 @@ def _limited_step(model, state):
 
 
 @inner_kernel
-def _next_step(step, error):
-    return step * min(GROWTH, 0.9 * max(error, 1e-6) ** (-1.0 / 3.0))
+def _next_step(step, error, error_before, rejected):
+    """Next step by the errors of this and the last one (Gustafsson's PI control), not longer after a rejection."""
+    factor = 0.9 * max(error, 1e-6) ** (-PROPORTIONAL - INTEGRAL) * max(error_before, 1e-2) ** PROPORTIONAL
+    return step * min(1.0 if rejected else GROWTH, factor)
 
 
 @inner_kernel
@@ -265,7 +270,8 @@ def _after_events(model, scratch, state):
     """Restart after a switch: consistent accelerations, a short step, protection against chatter."""
     state.work[EVENTS] += 1
     state.counts[STALLED] += 1
-    state.clock[NEXT_STEP] = min(state.clock[NEXT_STEP], RESTART_STEP)
+    state.clock[NEXT_STEP] = RESTART_STEP
+    state.clock[LAST_ERROR] = 1.0
     if not _make_consistent(model, scratch, state):
         return UNSOLVED
     if state.counts[STALLED] > MOST_STALLED:
@@ -289,6 +295,7 @@ def advance(model, scratch, state, rows, most_steps):
         step = _limited_step(model, state)
         accepted = False
         tries = 0
+        rejected = False
         while not accepted:
             error = take_step(
                 model, scratch, state.work, state.start, state.middle, state.end,
@@ -296,6 +303,7 @@ def advance(model, scratch, state, rows, most_steps):
             )  # fmt: skip
             if not (0.0 <= error <= 1.0):
                 state.counts[REJECTED] += 1
+                rejected = True
                 step *= 0.25 if not error > 1.0 else max(0.2, 0.9 * error ** (-1.0 / 3.0))
                 state.clock[NEXT_STEP] = step
                 if step < SHORTEST_STEP:
@@ -321,7 +329,8 @@ def advance(model, scratch, state, rows, most_steps):
             return NOT_FINITE
         if not _accept(model, state, rows, step):
             return ROWS_FULL
-        state.clock[NEXT_STEP] = _next_step(step, error)
+        state.clock[NEXT_STEP] = _next_step(step, error, state.clock[LAST_ERROR], rejected)
+        state.clock[LAST_ERROR] = error
         if time + step >= next_break(model.brake, state.counts[PHASE]) * (1.0 - 1e-14):
             state.clock[TIME] = next_break(model.brake, state.counts[PHASE])
         switched, outcome = _apply_events(state, state.values_before, state.values)

@@ -11,7 +11,7 @@ from slosh_cli.solver.problem import LOSSES, Array, Point, empty_point
 from slosh_cli.wagon.coordinates import COORDINATES, WHEELS
 
 # places in State.clock
-TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC = range(7)
+TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC, LAST_ERROR = range(8)
 # places in State.counts
 STEPS, REJECTED, PHASE, ROWS, STALLED = range(5)
 
@@ -114,8 +114,9 @@ _WHEEL_VECTORS = (
 def new_state(start: Point, events: int, first_step: float) -> State:
     """State at t = 0 from the initial `start`; (events,) event values; the first step to try in s."""
     unknowns, modes = start.rail.size, start.slosh.size
-    clock = np.zeros(7)
+    clock = np.zeros(8)
     clock[NEXT_STEP] = first_step
+    clock[LAST_ERROR] = 1.0
     return State(
         start=start,
         middle=empty_point(unknowns, modes),
