@@ -18,7 +18,8 @@ ORDER = [
     {"track"},
     {"solver"},
     {"results"},
-    {"study", "validation"},
+    {"study"},
+    {"validation"},
     {"report"},
     {"cli"},
 ]
@@ -29,9 +30,12 @@ RANK = {name: rank for rank, names in enumerate(ORDER) for name in names}
 ONE_HOME = {
     "yaml": "scenario/loader.py",
     "h5py": "results/hdf5.py",
-    "matplotlib": "report/figures.py",
+    "matplotlib": "report/",
     "pint": "scenario/units.py",
+    "sqlite3": "study/journal.py",
+    "distributed": "study/cluster.py",
 }
+"""The module, or the package, that a library is imported in and nowhere else."""
 
 MODULES = sorted(path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py"))
 
@@ -86,7 +90,8 @@ def test_the_package_itself_imports_its_version_and_nothing_else() -> None:
 @pytest.mark.parametrize("library", ONE_HOME)
 def test_a_library_has_one_home(library: str) -> None:
     users = {module for module in MODULES if library in {name.split(".")[0] for name in imported(module)}}
-    assert users == {ONE_HOME[library]}
+    assert users
+    assert all(user.startswith(ONE_HOME[library]) for user in users)
 
 
 @pytest.mark.parametrize("module", [module for module in MODULES if part(module) != "cli"])

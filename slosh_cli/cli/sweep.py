@@ -14,6 +14,80 @@ from slosh_cli.errors import UsageError
 ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that keep linear algebra to the thread that calls it: the stops share the cores among them already."""
 
+ScenarioOrStudy = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="SCENARIO",
+        help="Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper.",
+        show_default=False,
+    ),
+]
+Speeds = Annotated[
+    str | None,
+    typer.Option(
+        "--v0",
+        metavar="LIST",
+        help="Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary alone, "
+        "the scenario's own.",
+        show_default=False,
+    ),
+]
+Torques = Annotated[
+    str | None,
+    typer.Option(
+        "--torque",
+        metavar="LIST",
+        help="Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both "
+        "ends in); with --vary alone, the scenario's own.",
+        show_default=False,
+    ),
+]
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--vary",
+        metavar="KEY=LIST",
+        help="Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
+        "--vary contact.adhesion=dry,wet. May be repeated.",
+        show_default=False,
+    ),
+]
+Liquids = Annotated[
+    str | None,
+    typer.Option(
+        "--liquid",
+        metavar="LIST",
+        help="Models of the load. Default: the scenario's own (the paper's: modal) and rigid.",
+        show_default=False,
+    ),
+]
+StudyFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="DIR",
+        help="Folder of the study. Default: outputs/ and the study's name.",
+        show_default=False,
+    ),
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option("--jobs", metavar="N", min=1, help="Threads. Default: one per core.", show_default=False),
+]
+ClusterAddress = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="ADDRESS",
+        help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs slosh-cli[cluster]).",
+        show_default=False,
+    ),
+]
+Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
+
 
 def register(app: typer.Typer) -> None:
     """Add the command to the tree."""
@@ -21,69 +95,20 @@ def register(app: typer.Typer) -> None:
 
 
 def sweep(
-    scenario_file: Annotated[
-        Path | None,
-        typer.Argument(
-            metavar="[SCENARIO]",
-            help="Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper.",
-            show_default=False,
-        ),
-    ] = None,
-    speeds: Annotated[
-        str | None,
-        typer.Option(
-            "--v0", metavar="LIST", show_default=False,
-            help="Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; "
-            "with --vary alone, the scenario's own.",
-        ),
-    ] = None,
-    torques: Annotated[
-        str | None,
-        typer.Option(
-            "--torque", metavar="LIST", show_default=False,
-            help="Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both "
-            "ends in); with --vary alone, the scenario's own.",
-        ),
-    ] = None,
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--vary", metavar="KEY=LIST", show_default=False,
-            help="Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
-            "--vary contact.adhesion=dry,wet. May be repeated.",
-        ),
-    ] = None,
-    liquids: Annotated[
-        str | None,
-        typer.Option(
-            "--liquid", metavar="LIST", show_default=False,
-            help="Models of the load. Default: the scenario's own (the paper's: modal) and rigid.",
-        ),
-    ] = None,
+    scenario_file: ScenarioOrStudy = None,
+    speeds: Speeds = None,
+    torques: Torques = None,
+    vary: Vary = None,
+    liquids: Liquids = None,
     overrides: Overrides = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="DIR", show_default=False,
-            help="Folder of the study. Default: outputs/ and the study's name.",
-        ),
-    ] = None,
-    jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", metavar="N", min=1, show_default=False, help="Threads. Default: one per core."),
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            "--cluster", metavar="ADDRESS", show_default=False,
-            help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs slosh-cli[cluster]).",
-        ),
-    ] = None,
-    histories: Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")] = False,
+    output: StudyFolder = None,
+    jobs: Jobs = None,
+    cluster: ClusterAddress = None,
+    histories: Histories = False,
+    fresh: Fresh = False,
+    dry_run: DryRun = False,
     as_json: AsJson = False,
-) -> ExitCode:  # fmt: skip
+) -> ExitCode:
     """Run a grid of stops and compare liquid with solid (Figure 3).
 
     Every finished stop is kept at once: the same command continues a study that was interrupted, and a study that

@@ -106,6 +106,9 @@ def _optimum(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
             parts.append(f"{speed:g} km/h {liquid}: {torque:g} kN m ({point.distance:.1f} m{where}){gaps}")
             found.append(OPTIMUM[0] <= torque <= OPTIMUM[1])
     text = "the most effective torque lies between 15 and 20 kN m at 80 and at 160 km/h"
+    torques = [torque for curve in curves.values() for torque in curve]
+    if not (min(torques) < OPTIMUM[0] and max(torques) > OPTIMUM[1]):
+        found, parts = [], ["the study's torques do not reach beyond that range on both sides", *parts]
     return Verdict("fig3-optimum", text, _overall(found), ". ".join(parts))
 
 

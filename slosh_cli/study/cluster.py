@@ -11,7 +11,6 @@ import queue
 import time
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator
-from importlib import import_module
 from itertools import islice
 from statistics import median
 from threading import Event
@@ -69,10 +68,11 @@ class Cluster:
 
     def __init__(self, address: str) -> None:
         try:
-            self._dask: Any = import_module("distributed")
+            import distributed
         except ImportError:
             text = "--cluster needs Dask: python -m pip install 'slosh-cli[cluster]', here and for the workers"
             raise UsageError(text, "--cluster") from None
+        self._dask: Any = distributed
         self.address = address
         for name in ("distributed.client", "distributed.comm", "distributed.core"):  # what they say, we say
             logging.getLogger(name).setLevel(logging.CRITICAL)

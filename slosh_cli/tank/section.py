@@ -72,7 +72,7 @@ class EllipticalSection:
 
 def _segment_area(angle: float) -> float:
     """Area of the unit circle's segment of half-angle `angle`."""
-    if angle < 0.0:  # the difference below would lose its digits
+    if angle < 0.02:  # the difference below would lose its digits
         return 2.0 / 3.0 * angle**3 * (1.0 - angle**2 / 5.0 + 2.0 * angle**4 / 105.0)
     return angle - math.sin(2.0 * angle) / 2.0
 

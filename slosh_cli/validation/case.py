@@ -126,6 +126,8 @@ def run_case(data: CaseData, compute: Compute) -> CaseResult:
     try:
         outcome = compute(data)
     except Exception as error:  # whatever it is, it belongs into the report and must not hide the other cases
-        row = Row("the case runs to its end", f"{type(error).__name__}: {error}", "yes", 1.0, 0.0, data.source, "verdict")
+        row = Row(
+            "the case runs to its end", f"{type(error).__name__}: {error}", "yes", 1.0, 0.0, data.source, "verdict"
+        )
         return CaseResult(data, (row,), None, time.perf_counter() - began)
     return CaseResult(data, outcome.rows, outcome.chart, time.perf_counter() - began)

@@ -68,12 +68,12 @@ def test_order_2_on_the_stiff_wagon_with_slosh(stiff):
 def test_stiff_motion_is_killed_not_rung(stiff):
     """L-stability: after ten long steps nothing is left of motions that the exact solution lost long ago."""
     system, model = stiff
-    fast = [vector for rate, vector in zip(*modes_of(system), strict=True) if rate.real < -500.0]
+    fast = [one for rate, one in zip(*modes_of(system), strict=True) if rate.real < -500.0]
     assert len(fast) == 6
     size = system.mass.shape[0]
-    for vector in fast:
+    for mode in fast:
         # displacement and velocity in proportion, the larger of them 0.01 (m, rad or their like per second)
-        vector = np.real(vector * np.exp(-1j * np.angle(vector[np.abs(vector).argmax()])))
+        vector = np.real(mode * np.exp(-1j * np.angle(mode[np.abs(mode).argmax()])))
         x, v = np.split(vector * 1e-2 / np.abs(vector).max(), 2)
         end_x, end_v = reached(march(linear_model(model, 0.05, 0.5), started(model, x, v), 0.05))
         exact_x, exact_v = system.exact(x, v, 0.5)

@@ -10,7 +10,7 @@ CASES = {
     "dry, four lock": ("paper_160_solid", "braking.torque=20 kN m"),
     "wet": ("paper_80_solid", "contact.adhesion=wet", "braking.torque=15 kN m"),
     "liquid": ("paper_160", "braking.torque=17.5 kN m"),
-    "far too strong": ("paper_80_solid", "braking.torque=500 kN m"),
+    "far too strong": ("paper_80_solid", "braking.torque=45 kN m"),
     "lifting": ("paper_80", "braking.torque=15 kN m"),
 }
 
@@ -105,10 +105,12 @@ def test_wheel_locks_where_torque_beats_adhesion(stop):
     assert min(some[1], some[3]) > 5.0
 
 
+FORK = ("paper_160_solid", "braking.initial_speed=150 km/h")
+
+
 def test_locked_distances_of_the_fork(stop):
     """Model section 11: rigid, 150 km/h, dry: 334 m at 19.6 kN m with three wheels locked, 388 m at 20 with four."""
-    fork = ("paper_160_solid", "braking.initial_speed=150 km/h")
-    short, long = stop(*fork, "braking.torque=19.6 kN m"), stop(*fork, "braking.torque=20 kN m")
+    short, long = stop(*FORK, "braking.torque=19.6 kN m"), stop(*FORK, "braking.torque=20 kN m")
     assert short.braking_distance_m == pytest.approx(334.0, abs=0.5)
     assert long.braking_distance_m == pytest.approx(388.0, abs=0.5)
     assert [seconds > 0 for seconds in short.locked_time_s] == [False, True, True, True]
@@ -116,23 +118,31 @@ def test_locked_distances_of_the_fork(stop):
 
 
 def test_locked_wagon_slides_like_a_block(stop):
-    """All wheels locked from the first blink: `m dV/dt = -8 f(V) - resistance`, wheels no longer rotating mass."""
-    result = stop("paper_80_solid", "braking.torque=500 kN m", EVERY_MS)
-    c, sliding = result.channels, result.time > 1.0
+    """All wheels locked before long: `m dV/dt = -8 f(V) - resistance`, and no rotating mass any more."""
+    result = stop("paper_80_solid", "braking.torque=35 kN m", EVERY_MS)
+    c, sliding = result.channels, (result.time > 1.0) & (result.time < 9.5)
     mass = 21.3e3 + 2 * 1.8e3 + 4 * 1.4e3 + 830 * 15.5 * np.pi * 1.5**2 / 2
-    assert np.all(of_wheels(result, "speed")[:, 200:] == 0.0)
     V, time = c["speed"][sliding], result.time[sliding]
+    assert V[-1] > 1.0
     # Polach's dry law, fully sliding: creepage 1; the check numbers of model section 7 give the ellipse
     mu = 0.55 * (0.6 * np.exp(-0.6 * V) + 0.4)
-    deceleration = 0.0
+    deceleration = (851 + 13.5 * V + 1.244 * V**2) / mass
     for wheel in WHEELS:
+        assert np.all(c[f"wheel_{wheel}_speed"][sliding] == 0.0)
         N = c[f"wheel_{wheel}_normal_force"][sliding]
-        eps = 210e9 / 2.6 * np.pi * 7.0e-3 * 5.3e-3 * (N / 93e3) ** (2 / 3) * 4.12 * V / np.maximum(V, 0.05) / 4 / mu / N
+        eps = 210e9 / 2.6 * np.pi * 7.0e-3 * 5.3e-3 * (N / 93e3) ** (2 / 3) * 4.12 / (4 * mu * N)
         force = 2 * mu * N / np.pi * (eps / (1 + eps**2) + np.arctan(0.4 * eps))
         deceleration = deceleration + 2 * force / mass
-    deceleration = deceleration + (851 + 13.5 * V + 1.244 * V**2) / mass
-    lost = np.trapezoid(deceleration, time)
-    assert V[0] - V[-1] == pytest.approx(lost, rel=2e-3)
+    assert V[0] - V[-1] == pytest.approx(np.trapezoid(deceleration, time), rel=1e-3)
+
+
+@pytest.mark.parametrize("torque", [50, 60, 80, 120, 500])
+def test_wheels_that_lift_and_land_hard_do_not_end_the_run(stop, torque):
+    """A torque far beyond adhesion throws the bogies about; wheels land at metres a second and the run goes on."""
+    result = stop("paper_80_solid", f"braking.torque={torque} kN m")
+    assert result.status in ("stopped", "overturned"), result.reason
+    assert min(result.min_wheel_load_N) == 0.0
+    assert result.energy_residual < 1e-3
 
 
 def test_torque_without_speed_never_drives_a_wheel_back(stop):

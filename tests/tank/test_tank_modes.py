@@ -1,28 +1,21 @@
 """Longitudinal modes against exact solutions, their own identities and published transverse modes."""
 
-import csv
 import math
-import threading
-import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tank_examples import BOTTLE, THREE_TROUGHS, V_TROUGH, box, cylinder, ellipse, polygon, regular_polygon
 
 from slosh_cli.scenario import Liquid
-from slosh_cli.tank import longitudinal
 from slosh_cli.tank.coefficients import SloshMode, computed_modes, slosh_modes, tank_modes
-from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
-from slosh_cli.tank.errors import TankError
+from slosh_cli.tank.eigenproblem import HalfSectionElements
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.longitudinal import TOLERANCE, longitudinal_mode, longitudinal_modes
 from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, liquid_depth, section_of
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 
-DATA = Path(__file__).parents[1] / "data"
 GRAVITY = 9.81
 LENGTH = 5.75
 NUMBERS = (1, 3, 5)
@@ -74,6 +67,14 @@ def test_the_rectangular_mass_fraction_has_its_closed_form():
         assert mode.slosh_mass / frozen_load(tank).mass == pytest.approx(fraction, rel=1e-5)
 
 
+def test_small_heights_of_a_shallow_liquid_settle_too():
+    """At 9 cm in a 4.9 m tank the force acts 0.03 to 2 mm above the floor: a small difference of large integrals."""
+    section, depth, length = RectangularSection(2.5687, 0.44586), 0.0934, 4.8742
+    for mode in longitudinal_modes(section, depth, length, 5).modes:
+        _, lambda_1, lambda_02, _ = rectangle_exactly(mode.n, 2.5687, depth, length, 1.0)
+        assert mode.height == pytest.approx(lambda_02 / lambda_1, rel=1e-5)
+
+
 def test_right_angled_trough():
     tank = polygon(V_TROUGH, fill=0.7)
     for n, mode in zip(NUMBERS, computed_modes(tank, 3), strict=True):
@@ -112,46 +113,6 @@ def test_curved_and_singular_sections_converge_as_fast(fill):
     changes = np.abs(np.diff(frequencies))
     assert np.log2(changes[1] / changes[2]) == pytest.approx(4.0, abs=0.3)
     assert changes[2] / frequencies[-1] < 1e-6
-
-
-def transverse_table():
-    with (DATA / "transverse_modes.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return [(float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in rows]
-
-
-def test_the_transverse_table_is_complete():
-    table = transverse_table()
-    assert [depth for depth, _ in table] == pytest.approx(np.arange(0.1, 0.95, 0.1))
-    assert np.all(np.diff([value for _, value in table]) > 0.0)
-
-
-@pytest.mark.parametrize(("depth", "published"), transverse_table())
-def test_transverse_modes_of_the_circular_cylinder(depth, published):
-    mesh = triangulate(half_section(EllipticalSection(1.0, 1.0), 2.0 * depth), 0.0).refined()
-    solved = HalfSectionElements(mesh).modes(0.0, parity=Parity.ANTISYMMETRIC)
-    assert solved.kappa[0] == pytest.approx(published, rel=2e-4)
-
-
-@pytest.mark.parametrize(
-    ("parity", "across"),
-    [(Parity.SYMMETRIC, (0.0, 1.0, 2.0)), (Parity.ANTISYMMETRIC, (0.5, 1.5, 2.5))],
-)
-def test_overtones_of_a_rectangle(parity, across):
-    mesh = triangulate(half_section(RectangularSection(2.0, 2.0), 1.0), 0.0).refined()
-    k = np.hypot(np.array(across) * math.pi, 0.5)
-    coarse, fine = (
-        np.abs(HalfSectionElements(one).modes(0.5, 3, parity).kappa / (k * np.tanh(k)) - 1.0)
-        for one in (mesh.refined(), mesh.refined().refined())
-    )
-    assert coarse.max() < 5e-4
-    assert np.log2(coarse / fine) == pytest.approx(4.0, abs=0.3)
-
-
-def test_symmetric_modes_need_a_wavenumber():
-    elements = HalfSectionElements(triangulate(half_section(RectangularSection(2.0, 2.0), 1.0), 0.0))
-    with pytest.raises(ValueError, match="above 0"):
-        elements.modes(0.0)
 
 
 TANKS = {
@@ -301,49 +262,3 @@ def test_given_coefficients_are_used_as_they_are():
 
     tank = cylinder().model_copy(update={"coefficients": (Given(),)})
     assert slosh_modes(tank) == (SloshMode(0.69, 137071.0, -68461.0, 442163.0, 0.004),)
-
-
-def test_three_modes_of_a_cylinder_take_half_a_second_and_nothing_the_second_time():
-    section = EllipticalSection(1.2, 1.2)
-    longitudinal_modes(section, 1.0, LENGTH, 1)  # imports scikit-fem
-    taken = [longitudinal_modes(section, 2.4 * fill, 5.76, 3).solve_seconds for fill in (0.5, 0.6, 0.75, 0.9)]
-    assert min(taken) < 0.5
-    assert max(taken) < 2.0
-    started = time.perf_counter()
-    again = longitudinal_modes(section, 2.4 * 0.9, 5.76, 3)
-    assert time.perf_counter() - started < 0.002
-    assert again is longitudinal_modes(section, 2.4 * 0.9, 5.76, 3)
-
-
-def test_the_density_is_not_part_of_the_key():
-    before = computed_modes(cylinder(0.31), 2)
-    done = longitudinal._CACHE.computed
-    other = Liquid(model="modal", density=830.0)
-    after = computed_modes(cylinder(0.31, liquid=other), 2)
-    assert longitudinal._CACHE.computed == done
-    assert after[0].mu / before[0].mu == pytest.approx(830.0 / 998.2)
-
-
-def test_threads_share_one_computation():
-    done = longitudinal._CACHE.computed
-    found = []
-    threads = [threading.Thread(target=lambda: found.append(computed_modes(cylinder(0.37), 1))) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert longitudinal._CACHE.computed == done + 1
-    assert len(found) == 4
-    assert len(set(found)) == 1
-
-
-def test_what_never_settles_is_refused(monkeypatch):
-    monkeypatch.setattr(longitudinal, "_MOST_UNKNOWNS", 100)
-    with pytest.raises(TankError, match=r"still change by .* ask for fewer modes"):
-        longitudinal_modes(EllipticalSection(1.2, 1.2), 1.9, 5.77, 3)
-
-
-@pytest.mark.parametrize(("count", "length"), [(0, 5.75), (-1, 5.75), (1, 0.0), (1, -1.0), (1, math.nan)])
-def test_senseless_counts_and_lengths_are_refused(count, length):
-    with pytest.raises(ValueError, match="must be positive"):
-        longitudinal_modes(EllipticalSection(1.2, 1.2), 1.2, length, count)

@@ -161,6 +161,7 @@ def test_higher_given_modes_have_their_own_bound():
         for omega, share in ((1.6, 0.7), (3.8, 0.2))
     )
     tank = cylinder().model_copy(update={"coefficients": (first, second)})
+    assert [row.n for row in compare_modes(tank)] == [1, 3]
     said = impossible_fractions(tank)
     assert len(said) == 1
     assert said[0].startswith("given mode 2 moves 0.2000")

@@ -82,10 +82,11 @@ def kinetic_energy(scenario, load, velocity):
 def elongations(scenario, displacement):
     """Pairs (suspension unit, relative vertical motion of its ends): four primary, two secondary."""
     wagon, u = scenario.wagon, Shape(displacement)
+    half_pivots, half_base = wagon.pivot_spacing / 2, wagon.bogie.wheelbase / 2
     found = []
-    for bogie, pivot in ((0, wagon.pivot_spacing / 2), (1, -wagon.pivot_spacing / 2)):
+    for bogie, pivot in ((0, half_pivots), (1, -half_pivots)):
         found.append((wagon.secondary_suspension, (u.w_c - u.theta_c * pivot) - u.w_b[bogie]))
-        for wheel, ahead in zip(WHEEL_OF_BOGIE[bogie], (wagon.bogie.wheelbase / 2, -wagon.bogie.wheelbase / 2), strict=True):
+        for wheel, ahead in zip(WHEEL_OF_BOGIE[bogie], (half_base, -half_base), strict=True):
             found.append((wagon.primary_suspension, (u.w_b[bogie] - u.theta_b[bogie] * ahead) - u.w_w[wheel]))
     return found
 

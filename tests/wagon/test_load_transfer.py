@@ -109,9 +109,10 @@ def test_slope_work_of_steady_rolling_feeds_the_foundation(stop):
     assert climbed[-1] > 100.0
     assert climbed == pytest.approx(taken, rel=1e-4)  # and finer elements come closer, as h^4
     finer = stop(*STEADY, "track.domain.element_length=0.25 m").channels
-    gaps = [abs(work / lost - 1) for work, lost in (
-        (climbed[-1], taken[-1]), (finer["energy_slope_work"][-1], finer["energy_foundation"][-1])
-    )]
+    gaps = [
+        abs(work / lost - 1)
+        for work, lost in ((climbed[-1], taken[-1]), (finer["energy_slope_work"][-1], finer["energy_foundation"][-1]))
+    ]
     assert gaps[0] / gaps[1] > 10
 
 

@@ -20,7 +20,9 @@ from slosh_cli.validation.exact.wagon import segment_area
 def compute(data: CaseData) -> Outcome:
     """The same elements, across the tank instead of along it; then the longitudinal mode of a very long tank."""
     found = Findings(data)
-    table = [(float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in read_table("transverse_modes.csv")]
+    table = [
+        (float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in read_table("transverse_modes.csv")
+    ]
     computed = []
     for depth, published in table:
         mesh = triangulate(half_section(EllipticalSection(1.0, 1.0), 2.0 * depth), 0.0).refined()
@@ -38,7 +40,9 @@ def compute(data: CaseData) -> Outcome:
         name = f"{length:g} m long tank, fill {fill:g}"
         found.compare(f"omega, {name} / rad/s", mode.frequency, pi / length * sqrt(GRAVITY * area / width), "long_wave")
         # of a shallow layer the surface moves 8/pi^2, and lambda_1 needs no more than the surface's width
-        found.compare(f"lambda_1, {name} / kg", mode.lambda_1, -2 * tank.liquid.density * width * (length / pi) ** 2, "lambda_1")
+        found.compare(
+            f"lambda_1, {name} / kg", mode.lambda_1, -2 * tank.liquid.density * width * (length / pi) ** 2, "lambda_1"
+        )
         fraction = mode.slosh_mass / (tank.liquid.density * area * length)
         found.compare(f"slosh mass over mass, {name}", fraction, 8 / pi**2, "long_wave")
     depths, values = zip(*table, strict=True)

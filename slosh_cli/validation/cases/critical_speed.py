@@ -31,10 +31,14 @@ def compute(data: CaseData) -> Outcome:
         # 1/y0^2 = 4 k (V_cr^2 - V^2) m falls to zero in a straight line over V^2
         slope, offset = np.polyfit(speeds**2, under**-2.0, 1)
         reached = float(np.sqrt(-offset / slope))
-        found.compare(f"where the elements' deflection grows without bound, {shear:g} N / m/s", reached, waves, "elements")
+        found.compare(
+            f"where the elements' deflection grows without bound, {shear:g} N / m/s", reached, waves, "elements"
+        )
         line = curve("free waves", [0, waves], [under[0] ** -2 * waves**2 / (waves**2 - speeds[0] ** 2), 0], exact=True)
         points = curve("moving elements", speeds**2 / waves, under**-2.0, marks=True)
-        panels.append(Panel("V^2 / V_cr / m/s", f"(1 N / deflection)^2, {shear:g} N shear layer / N^2/m^2", (line, points)))
+        panels.append(
+            Panel("V^2 / V_cr / m/s", f"(1 N / deflection)^2, {shear:g} N shear layer / N^2/m^2", (line, points))
+        )
     _refusals(data, found)
     return found.outcome(Chart(panels))
 

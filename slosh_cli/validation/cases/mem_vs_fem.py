@@ -81,9 +81,7 @@ def _loads(result: Result, i: int, step: float, steps_before: int) -> Array:
     return np.concatenate([np.full(steps_before, force[0]), CubicSpline(result.time, force)(_fine(result, step))])
 
 
-def _costs(
-    found: Findings, name: str, result: Result, ground: Ground, setting: Mapping[str, Any]
-) -> None:
+def _costs(found: Findings, name: str, result: Result, ground: Ground, setting: Mapping[str, Any]) -> None:
     """What a whole stop would ask of the fixed rail, beside what it asks of the moving one."""
     from slosh_cli.solver.setup import problem
 
@@ -106,5 +104,3 @@ def _panel(name: str, result: Result, ground: Ground) -> Panel:
         curves.append(curve(f"wheel {i}, fixed rail", result.time, 1e3 * ground.deflections[:, i - 1], exact=True))
         curves.append(curve(f"wheel {i}, moving elements", result.time, seen))
     return Panel("time / s", f"rail under the wheel, {name} / mm", curves)
-
-

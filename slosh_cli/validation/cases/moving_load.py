@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from slosh_cli.scenario import Track
+from slosh_cli.validation import kernels
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
@@ -33,7 +34,9 @@ def compute(data: CaseData) -> Outcome:
             for coarse, fine in pairwise(errors):
                 found.compare(f"order of convergence, {name}", float(np.log2(coarse / fine)), 4.0, "order")
             found.limit(f"largest error of the shape over its peak, {name}", _worst(shape, exact), "shape")
-            found.limit(f"force missing in the kernel's balance per newton, {name}", _kernel_gap(track, speed), "kernel")
+            found.limit(
+                f"force missing in the kernel's balance per newton, {name}", _kernel_gap(track, speed), "kernel"
+            )
     return found.outcome(_chart(data, errors_at))
 
 
@@ -48,12 +51,11 @@ def _worst(shape: np.ndarray, exact: np.ndarray) -> float:
 
 def _kernel_gap(track: Track, speed: float) -> float:
     """Largest nodal force (N) that the time loop's residual leaves beside the load of 1 N."""
-    from slosh_cli.track import mem, moving
+    from slosh_cli.track import mem
 
     rail = mem.rail_model(track, WHEELS)
     steady = np.ascontiguousarray(mem.steady_shapes(rail, speed)[:, LOADED])
-    still, residual = np.zeros_like(steady), np.zeros_like(steady)
-    moving.rail_residual(rail, steady, still, still, speed, 0.0, np.zeros_like(steady), residual)
+    residual = kernels.rail_residual(rail, steady, speed)
     residual[rail.contact[LOADED]] += 1.0
     return float(np.abs(residual).max())
 

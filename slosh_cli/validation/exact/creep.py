@@ -33,7 +33,9 @@ def adhesion(p: Adhesion, gradient: float, creepage: float, speed: float) -> flo
     return 2 * mu / pi * (p.kA * eps / (1 + (p.kA * eps) ** 2) + atan(p.kS * eps))
 
 
-def ellipse(wheel_radius: float, crown_radius: float, youngs: float, poisson: float, force: float) -> tuple[float, float, float]:
+def ellipse(
+    wheel_radius: float, crown_radius: float, youngs: float, poisson: float, force: float
+) -> tuple[float, float, float]:
     """Semi-axes a >= b and approach, m, under `force` (N), for crossed cylinders of one material."""
     from scipy.integrate import quad
     from scipy.optimize import brentq
@@ -55,3 +57,26 @@ def ellipse(wheel_radius: float, crown_radius: float, youngs: float, poisson: fl
     modulus = youngs / (2 * (1 - poisson**2))
     a = (3 * ratio**2 * second * force / (2 * pi * modulus * (small + large))) ** (1 / 3)
     return a, a / ratio, 3 * force * first / (2 * pi * modulus * a)
+
+
+def half_space(semi_axes: tuple[float, float], force: float, modulus: float) -> tuple[float, float, float]:
+    """Approach (m) and the two curvatures (1/m) that the pressure `p0 sqrt(1 - x^2/a^2 - y^2/b^2)` makes.
+
+    Johnson (3.64): displacements of the half space `(L - M x^2 - N y^2)/(pi E*)`, potentials integrated over psi from
+    0 to infinity; `psi = (t b/(1 - t))^2` makes the integrals proper.
+    """
+    from scipy.integrate import quad
+
+    a, b = semi_axes
+    p0 = 3 * force / (2 * pi * a * b)
+
+    def integral(along: int, across: int) -> float:
+        def integrand(t: float) -> float:
+            root = t * b / (1 - t)
+            stretch = 2 * b / (1 - t) ** 2
+            other = 1 / sqrt((a**2 + root**2) * (b**2 + root**2))
+            return stretch * other / ((a**2 + root**2) ** along * (b**2 + root**2) ** across)
+
+        return float(0.5 * p0 * a * b / modulus * quad(integrand, 0.0, 1.0 - 1e-9, epsrel=1e-10)[0])
+
+    return integral(0, 0), integral(1, 0), integral(0, 1)

@@ -64,7 +64,9 @@ class FixedRail:
 
 
 def fixed_rail(beam: Beam, length: float, elements: int) -> FixedRail:
-    """Assemble `M = m INT N N`, `C = alpha INT N N + lam INT N' N'`, `K = EI INT N'' N'' + k_sm INT N' N' + k INT N N`."""
+    """Assemble `M = m INT N N`, `C = alpha INT N N + lam INT N' N'` and
+    `K = EI INT N'' N'' + k_sm INT N' N' + k INT N N`.
+    """
     mass, tension, bending = element_matrices(length)
     size = 2 * (elements + 1)
     bands = {name: np.zeros((4, size)) for name in ("mass", "damping", "stiffness")}

@@ -68,4 +68,6 @@ def fourier_integral(beam: Beam, r: float, speed: float) -> float:
         return float((np.exp(1j * xi * r) / lossy).real)
 
     pieces = np.concatenate([np.linspace(0.0, 20.0, 41), np.geomspace(20.0, 2e3, 120)[1:]])
-    return float(sum(quad(integrand, *piece, epsabs=1e-16, epsrel=1e-12, limit=400)[0] for piece in pairwise(pieces)) / np.pi)
+    return float(
+        sum(quad(integrand, *piece, epsabs=1e-16, epsrel=1e-12, limit=400)[0] for piece in pairwise(pieces)) / np.pi
+    )

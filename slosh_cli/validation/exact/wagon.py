@@ -56,7 +56,9 @@ def point_wagon(scenario: Scenario) -> PointWagon:
     )
 
 
-def stopping(wagon: PointWagon, speed: float, torque: float, onset: float, stop: float, creepage: float) -> tuple[float, float]:
+def stopping(
+    wagon: PointWagon, speed: float, torque: float, onset: float, stop: float, creepage: float
+) -> tuple[float, float]:
     """Braking distance (m) and time (s) from the onset, by quadrature.
 
     `(m + m_rot (1 - nu)) dV/dt = -(8 T/R + a + b V + c V^2)` with the creepage nu of braked wheels; at the onset the

@@ -1,0 +1,206 @@
+"""`slosh validate`: every claim of the program held against something it did not compute."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.options import AsJson
+from slosh_cli.cli.output import note, say, say_json, show
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from slosh_cli.validation.case import CaseResult
+    from slosh_cli.validation.data_file import CaseData
+
+REPORT: Final = "report.md"
+FOLDER: Final = Path("outputs") / "validation"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the tree."""
+    app.command("validate")(validate)
+
+
+def validate(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Cases to run; all without a name.", show_default=False),
+    ] = None,
+    as_json: AsJson = False,
+    list_only: Annotated[bool, typer.Option("--list", help="Name the cases and what they ask, run none.")] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="DIR",
+            help="Folder for report and figures. Default: outputs/validation.",
+            show_default=False,
+        ),
+    ] = None,
+) -> ExitCode:
+    """Hold the program against published numbers, closed forms and other codes.
+
+    Exit code 1 when a case falls outside its stated tolerance.
+    """
+    from slosh_cli.validation.registry import chosen, left_out
+
+    cases = chosen(names or [])
+    missing = [] if names else left_out()
+    if list_only:
+        _list(cases, missing, as_json=as_json)
+        return ExitCode.DONE
+    results = _run(cases)
+    files = write_validation(results, missing, output or FOLDER)
+    if as_json:
+        say_json(
+            {
+                "cases": [_plain(result) for result in results],
+                "left_out": [data.name for data in missing],
+                "files": files,
+            }
+        )
+    else:
+        _show(results, missing, detailed=bool(names))
+        say(f"  report   {files['report']}")
+    return ExitCode.DONE if all(result.passed for result in results) else ExitCode.FELL_SHORT
+
+
+def write_validation(results: "Sequence[CaseResult]", missing: "Sequence[CaseData]", folder: Path) -> dict[str, Any]:
+    """Write the report and a figure per case into `folder`, together; returns where they lie."""
+    from slosh_cli.report.validation_figures import draw_case
+    from slosh_cli.results.files import staging
+    from slosh_cli.validation.markdown import report
+    from slosh_cli.version import __version__
+
+    figures: list[Path] = []
+    with staging(folder) as stage:
+        for result in results:
+            if result.chart is not None:
+                figures += draw_case(result.name, result.data.title, result.chart, stage)
+        text = report(results, missing, f"slosh {__version__}: validation")
+        (stage / REPORT).write_text(text, encoding="utf-8")
+    return {"report": str(folder / REPORT), "figures": [str(folder / file.name) for file in figures]}
+
+
+def _run(cases: "Sequence[CaseData]") -> "list[CaseResult]":
+    """Run the cases one after the other, with a bar on a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from slosh_cli.cli.progress import announce_compilation
+    from slosh_cli.validation.registry import run
+
+    announce_compilation()
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f}/{task.total:.0f}"))
+    console = Console(stderr=True)
+    results = []
+    with Progress(
+        *columns, TimeElapsedColumn(), console=console, transient=True, disable=not sys.stderr.isatty()
+    ) as bar:
+        task = bar.add_task("", total=len(cases))
+        for data in cases:
+            bar.update(task, description=data.name)
+            results.append(run(data))
+            bar.advance(task)
+    return results
+
+
+def _plain(result: "CaseResult") -> dict[str, Any]:
+    rows = [
+        {
+            "quantity": row.quantity,
+            "value": row.value,
+            "reference": row.reference,
+            "deviation": row.deviation,
+            "tolerance": row.tolerance,
+            "source": row.source,
+        }
+        for row in result.rows
+    ]
+    return {"name": result.name, "passed": result.passed, "seconds": result.seconds, "rows": rows}
+
+
+def _list(cases: "Sequence[CaseData]", missing: "Sequence[CaseData]", *, as_json: bool) -> None:
+    if as_json:
+        fields = [{"name": data.name, "title": data.title, "question": data.question} for data in cases]
+        say_json({"cases": fields, "left_out": [data.name for data in missing]})
+        return
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    for data in cases:
+        table.add_row(data.name, f"{data.title}. {data.question}")
+    show(table)
+    _say_missing(missing)
+
+
+def _show(results: "Sequence[CaseResult]", missing: "Sequence[CaseData]", *, detailed: bool) -> None:
+    """Named cases and those that fell short row by row, then one line per case."""
+    from slosh_cli.validation.markdown import summary_sentence
+
+    for result in results:
+        if detailed or not result.passed:
+            show(_rows(result), "")
+    show(_overview(results))
+    _say_missing(missing)
+    if not detailed:
+        note("`slosh validate NAME` prints every row of a case.")
+    say(summary_sentence(results))
+
+
+def _rows(result: "CaseResult") -> "Table":
+    from rich.table import Table
+    from rich.text import Text
+
+    from slosh_cli.validation.markdown import number, verdict_of
+
+    table = Table(
+        title=f"{result.name}: {result.data.title}", title_justify="left", title_style="bold", show_edge=False
+    )
+    table.add_column("quantity")
+    for column in ("ours", "reference", "deviation", "tolerance"):
+        table.add_column(column, justify="right")
+    table.add_column("verdict")
+    for row in result.rows:
+        style = "" if row.passed else "bold red"
+        cells = [
+            row.quantity,
+            number(row.value),
+            number(row.reference),
+            number(row.deviation, 2),
+            number(row.tolerance, 2),
+        ]
+        # plain texts: a bracket in a quantity is no markup
+        table.add_row(*(Text(cell) for cell in (*cells, verdict_of(row))), style=style)
+    return table
+
+
+def _overview(results: "Sequence[CaseResult]") -> "Table":
+    from rich.table import Table
+
+    from slosh_cli.validation.markdown import FELL_SHORT, PASSED
+
+    table = Table(show_edge=False)
+    table.add_column("case")
+    table.add_column("rows that count", justify="right")
+    table.add_column("worst deviation over tolerance", justify="right")
+    table.add_column("s", justify="right")
+    table.add_column("verdict")
+    for result in results:
+        counting = [row for row in result.rows if row.tolerance is not None]
+        shares = [row.deviation / row.tolerance for row in counting if row.deviation is not None and row.tolerance]
+        worst = f"{max(shares):.2g}" if shares else ""
+        verdict, style = (PASSED, "") if result.passed else (FELL_SHORT, "bold red")
+        table.add_row(result.name, str(len(counting)), worst, f"{result.seconds:.1f}", verdict, style=style)
+    return table
+
+
+def _say_missing(missing: "Sequence[CaseData]") -> None:
+    for data in missing:
+        note(f"{data.name} is left out: it needs {data.needs}, `pip install 'slosh-cli[validation]'`.")

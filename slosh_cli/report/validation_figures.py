@@ -1,0 +1,86 @@
+"""Figures of validation cases, as PNG and SVG: what the program computes over what it is compared with.
+
+The reference is a broad grey line beneath; computed curves differ in dash and lightness, points in their marker.
+"""
+
+from __future__ import annotations
+
+from itertools import cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from slosh_cli.report.figures import FORMATS, STYLE
+from slosh_cli.results.files import replacing
+
+if TYPE_CHECKING:
+    from slosh_cli.validation.chart import Chart, Curve, Panel
+
+PANEL_WIDTH: Final = 7.0  # inches
+HEIGHT: Final = 5.4
+RESOLUTION: Final = 130  # dots per inch
+
+LINES: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#08306b", "linestyle": "-"},
+    {"color": "#c1440e", "linestyle": (0, (6, 2))},
+    {"color": "#4a98c9", "linestyle": (0, (6, 2, 1, 2))},
+    {"color": "#7a7a7a", "linestyle": (0, (1.5, 1.2))},
+    {"color": "#8c2d04", "linestyle": (0, (3, 1))},
+)
+MARKS: Final = ("o", "s", "^", "D", "v", "P")
+EXACT: Final[tuple[str, ...]] = ("#bdbdbd", "#d9c7a8", "#c6d6e8")
+
+
+def draw_case(name: str, title: str, chart: Chart, folder: Path) -> list[Path]:
+    """Draw the figure of a case into `folder`; returns the files. Each appears whole or not at all."""
+    files = []
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(STYLE)
+        figure = case_figure(title, chart)
+        for suffix in FORMATS:
+            file = folder / f"{name}.{suffix}"
+            metadata = {"Date": None} if suffix == "svg" else None
+            with replacing(file) as temporary:
+                figure.savefig(temporary, format=suffix, metadata=metadata)
+            files.append(file)
+    return files
+
+
+def case_figure(title: str, chart: Chart) -> Figure:
+    """The panels of a chart side by side."""
+    count = len(chart.panels)
+    figure = Figure(figsize=(PANEL_WIDTH * count, HEIGHT), dpi=RESOLUTION, layout="constrained")
+    figure.suptitle(title, fontsize=15, fontweight="bold", x=0.012, ha="left")
+    for axes, panel in zip(figure.subplots(1, count, squeeze=False)[0], chart.panels, strict=True):
+        _draw_panel(axes, panel)
+    return figure
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    lines, marks, exact = cycle(LINES), cycle(MARKS), cycle(EXACT)
+    for one in panel.curves:
+        _draw_curve(axes, one, lines, marks, exact)
+    axes.set_xlabel(panel.x_label)
+    axes.set_ylabel(panel.y_label)
+    if panel.log_x:
+        axes.set_xscale("log")
+    if panel.log_y:
+        axes.set_yscale("log")
+    axes.legend(fontsize=9.5)
+
+
+def _draw_curve(axes: Axes, one: Curve, lines: Any, marks: Any, exact: Any) -> None:
+    if one.exact:
+        marker = next(marks) if one.marks else None
+        axes.plot(
+            one.x, one.y, color=next(exact), linewidth=5.0, solid_capstyle="round", marker=marker, label=one.label
+        )
+    elif one.marks:
+        colour = next(lines)["color"]
+        axes.plot(one.x, one.y, linestyle="none", marker=next(marks), color=colour, markersize=5.5, label=one.label)
+    else:
+        axes.plot(one.x, one.y, **next(lines), label=one.label)

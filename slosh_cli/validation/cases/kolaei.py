@@ -1,0 +1,110 @@
+"""Table 1 of the paper: the largest force of the liquid on a braked tank, over mass times deceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slosh_cli.scenario import find_packaged, load_tank_scenario
+from slosh_cli.tank import modal
+from slosh_cli.tank.coefficients import SloshMode, computed_modes, slosh_modes
+from slosh_cli.tank.load import frozen_load
+from slosh_cli.validation import kernels
+from slosh_cli.validation.case import Findings, Outcome
+from slosh_cli.validation.chart import Chart, Curve, Panel, curve
+from slosh_cli.validation.data_file import CaseData, read_table
+
+Array = NDArray[np.float64]
+GRAVITY = 9.81
+DURATION = 40.0
+STEP = 0.005
+PAIR = "computed, 1 mode"
+
+
+def compute(data: CaseData) -> Outcome:
+    """Step and ramp with printed and computed coefficients; only the physically consistent pair decides."""
+    found, panels = Findings(data), []
+    printed = {row["fill_over_radius"]: float(row["max_normalised_force"]) for row in read_table("table1.csv")}
+    for fill, name in data.reference["tanks"].items():
+        tank = load_tank_scenario(find_packaged(name)).tank
+        mass = frozen_load(tank).mass
+        choices = {
+            "printed": slosh_modes(tank),
+            PAIR: computed_modes(tank, 1),
+            f"computed, {data.reference['modes']} modes": computed_modes(tank, data.reference["modes"]),
+        }
+        curves: list[Curve] = []
+        for ramp in (0.0, data.reference["ramp"]):
+            for words, modes in choices.items():
+                force = normalised_force(modes, mass, data.reference["deceleration"], ramp)
+                shape = f"{ramp:.1f} s ramp" if ramp else "step"
+                quantity = f"largest force over m a, fill h/R = {fill}, {shape}, coefficients {words}"
+                if ramp and words == PAIR:
+                    found.compare(
+                        f"{quantity} (consistent with a {ramp:.1f} s ramp)", float(force.max()), printed[fill], "table"
+                    )
+                else:
+                    found.note(quantity, float(force.max()), printed[fill])
+                if len(modes) == 1:
+                    exact = _peak(modes[0].slosh_mass / mass, modes[0].frequency, ramp)
+                    found.compare(f"{quantity}: closed form", float(force.max()), exact, "closed_form", _CLOSED)
+                if words != "printed":
+                    curves.append(curve(f"{shape}, {words}", _times(), force))
+        level = [printed[fill]] * 2
+        panels.append(
+            Panel(
+                "time / s",
+                f"force over m a, h/R = {fill}",
+                (curve("Table 1", [0, DURATION], level, exact=True), *curves),
+            )
+        )
+        _bound(found, fill, choices, mass)
+    return found.outcome(Chart(panels))
+
+
+_CLOSED = "Undamped oscillator under a ramp of duration T: 1 + (lambda_1^2/(mu m)) |sin(omega T/2)/(omega T/2)|"
+
+
+def _times() -> Array:
+    return np.asarray(np.arange(round(DURATION / STEP) + 1) * STEP)
+
+
+def normalised_force(modes: Sequence[SloshMode], mass: float, deceleration: float, ramp: float) -> Array:
+    """Force of the liquid on the whole tank over m a, every STEP s, from the kernels that run in a stop.
+
+    The tank moves as prescribed and does not pitch. The trapezoidal rule is enough: steps are 1/700 of a period.
+    """
+    liquid = modal.modal_liquid(modes, GRAVITY, 1.0)
+    count = len(modes)
+    given = _deceleration(deceleration, ramp)
+    amplitude, rate = np.zeros(count), np.zeros(count)
+    second = kernels.liquid_acceleration(liquid, amplitude, rate, 0.0, -given(0.0))
+    forces = []
+    for time in _times():
+        force = kernels.liquid_force(liquid, amplitude, second)
+        forces.append((force + mass * given(time)) / (mass * deceleration))
+        half = 0.5 * STEP
+        ahead, faster = amplitude + STEP * rate + half**2 * second, rate + half * second
+        second = kernels.liquid_acceleration(liquid, ahead, faster, half, -given(time + STEP))
+        amplitude, rate = ahead + half**2 * second, faster + half * second
+    return np.array(forces)
+
+
+def _deceleration(level: float, ramp: float) -> Callable[[float], float]:
+    return lambda time: level if ramp == 0.0 else level * min(time / ramp, 1.0)
+
+
+def _peak(fraction: float, frequency: float, ramp: float) -> float:
+    phase = 0.5 * frequency * ramp
+    return 1.0 + fraction * (abs(sin(phase) / phase) if phase else 1.0)
+
+
+def _bound(found: Findings, fill: str, choices: Mapping[str, Sequence[SloshMode]], mass: float) -> None:
+    """The strict bound that the printed coefficients of the half-full tank break."""
+    bound = 8 / np.pi**2
+    for words in ("printed", PAIR):
+        share = choices[words][0].slosh_mass / mass
+        found.note(f"slosh mass over liquid mass, h/R = {fill}, {words} (at most 8/pi^2 with flat ends)", share, bound)
