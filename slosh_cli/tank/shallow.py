@@ -26,7 +26,7 @@ LIMITER = 1.5
 """Between 1 (minmod) and 2: how steep a reconstructed slope may be beside its neighbours."""
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
-FILM = 1e-4
+FILM = 1e-5
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
 stays bounded: A. Kurganov and G. Petrova, Comm. Math. Sci. 5 (2007) 133-160, equation 2.17."""
 
@@ -256,9 +256,7 @@ def _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, sourc
         flow_r = area_r * (speed + 0.5 * slope_speed[i])
         if i == 0:  # the wall mirrors the state
             area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
-        mass[i], momentum[i] = _hll(
-            gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
-        )
+        mass[i], momentum[i] = _hll(gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l)
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
         source[i] = gravity * (pressure_r - pressure_l - mean_area * surface_slope) / liquid.spacing
