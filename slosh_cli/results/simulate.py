@@ -118,7 +118,7 @@ def _warnings(scenario: Scenario, stop: Problem, run: Run) -> list[str]:
     room = section_of(scenario.tank).height * (1 - scenario.tank.fill)
     depth = section_of(scenario.tank).height - room
     rise = float(run.state.surface[0])
-    if rise > min(room, depth):
+    if stop.model.liquid.mu.size and rise > min(room, depth):
         found.append(
             f"The surface moves by {rise:.2f} m at the end walls, but there is {room:.2f} m of room above it and "
             f"{depth:.2f} m of liquid below: this stop lies outside the linear theory of the modal liquid."
@@ -133,7 +133,7 @@ def _warnings(scenario: Scenario, stop: Problem, run: Run) -> list[str]:
             f"The energy ledger misses {run.state.residual[2]:.1e} of the initial kinetic energy: lower "
             "solver.tolerance or refine track.domain.element_length."
         )
-    if scenario.tank.liquid.model != "rigid":
+    if stop.model.liquid.mu.size:
         found += _fraction_warnings(stop, frozen_load(scenario.tank).mass)
     return found
 
@@ -214,6 +214,8 @@ def _liquid_channels(
 
     The force is the derivative of the liquid's momentum, the frozen part included.
     """
+    if stop.model.shallow.cells:
+        return _cell_channels(scenario, rows, acceleration)
     liquid, load = stop.model.liquid, frozen_load(scenario.tank)
     modes = liquid.mu.size
     amplitude = rows[:, record.SLOSH_COLUMN :][:, :modes]
@@ -232,6 +234,17 @@ def _liquid_channels(
         "surface_rear": -amplitude @ liquid.side,
     }
     return channels | {slosh_amplitude(n + 1): amplitude[:, n] for n in range(modes)}
+
+
+def _cell_channels(scenario: Scenario, rows: Array, acceleration: Array) -> dict[str, Array]:
+    """Force and moment of the shallow-water liquid on the whole tank (means over steps), surface at both walls."""
+    cells = rows[:, record.CELLS_COLUMN :]
+    return {
+        "liquid_force": WHOLE * cells[:, 0],
+        "liquid_moment": WHOLE * cells[:, 1] - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
+        "surface_front": cells[:, 2],
+        "surface_rear": cells[:, 3],
+    }
 
 
 def _energy_channels(rows: Array) -> dict[str, Array]:

@@ -12,7 +12,7 @@ from slosh_cli.scenario.leaves import Choice, Count, Number, Quantity, Range, no
 from slosh_cli.scenario.polygon import Outline
 from slosh_cli.scenario.units import plain
 
-LiquidModel: TypeAlias = Literal["rigid", "modal"]
+LiquidModel: TypeAlias = Literal["rigid", "modal", "shallow-water"]
 Point: TypeAlias = tuple[float, float]
 
 _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
@@ -21,8 +21,9 @@ _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
 class Liquid(Part):
     """What is in the tank and how it moves."""
 
-    model: Annotated[LiquidModel, Choice(("rigid", "modal"), later=("shallow-water",))] = Field(
-        description="`modal`: a free surface, by linear slosh modes. `rigid`: the equivalent solid load."
+    model: Annotated[LiquidModel, Choice(("rigid", "modal", "shallow-water"))] = Field(
+        description="`rigid`: the equivalent solid load. `modal`: a free surface, by linear slosh modes. "
+        "`shallow-water`: a free surface with a roof and a bottom, for long tanks."
     )
     density: Annotated[float, Quantity("density", Range(50.0, 2.5e4), "830 kg/m^3")] = Field(
         description="Density of the liquid, kg/m^3."
@@ -30,6 +31,13 @@ class Liquid(Part):
     damping_ratio: Annotated[float, _DAMPING] = Field(
         default=0.0,
         description="Damping ratio of every computed slosh mode (given coefficients carry their own).",
+    )
+    cells: Annotated[int, Count(10, 2000)] = Field(
+        default=120, description="Finite volumes along the tank; only the shallow-water model uses them."
+    )
+    slot_speed: Annotated[float, Quantity("speed", Range(5.0, 1500.0), "30 m/s")] = Field(
+        default=30.0,
+        description="Speed of pressure waves where the section runs full (shallow-water), m/s: higher is stiffer.",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.solver.cells import FORCE, LOSS, MOMENT, cells_rise, settle_cells
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
     CONTACT_EVENT,
@@ -17,7 +18,8 @@ from slosh_cli.solver.events import (
     reached,
     shorter_step,
 )
-from slosh_cli.solver.ledger import BRAKE, SLOPE, balance
+from slosh_cli.solver.ledger import BRAKE, SLOPE, SLOSH_DAMPING, balance
+from slosh_cli.solver.method import DIAGONAL, GAMMA, OUTER
 from slosh_cli.solver.problem import LOSSES
 from slosh_cli.solver.record import record_row, step_extremes
 from slosh_cli.solver.stage import EVENTS, prepare_stage, solve_stage
@@ -36,7 +38,7 @@ from slosh_cli.solver.state import (
     TIME,
     TOTAL_START,
 )
-from slosh_cli.solver.step import DIAGONAL, OUTER, take_step
+from slosh_cli.solver.step import take_step
 from slosh_cli.tank.modal import surface_rise
 from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.brake import brake_torque, next_break
@@ -81,8 +83,9 @@ def _make_consistent(model, scratch, state):
     torque = brake_torque(model.brake, state.clock[TIME], phase)
     _copy_point(start, base)
     prepare_stage(model, scratch, state.work, 0.0, start.v[0], start.a[0])
-    solved = solve_stage(model, scratch, state.work, base, start, state.locked, 0.0, torque)
-    balance(model, start, state.energies)
+    push = state.push
+    solved = solve_stage(model, scratch, state.work, base, start, state.locked, 0.0, torque, push[FORCE], push[MOMENT])
+    balance(model, state.cells_start, start, state.energies)
     copy(state.energies, state.energies_before)
     event_values(model, start, state.locked, state.airborne, torque, state.values_before)
     return solved
@@ -106,6 +109,7 @@ def _settle_losses(state, step):
         state.losses[k] += step * (
             OUTER * (state.start.power[k] + state.middle.power[k]) + DIAGONAL * state.end.power[k]
         )
+    state.losses[SLOSH_DAMPING] += state.push[LOSS]
 
 
 @inner_kernel
@@ -125,7 +129,8 @@ def _settle_extremes(model, state, step):
     start, middle, end = state.start, state.middle, state.end
     left, right = surface_rise(model.liquid, start.slosh), surface_rise(model.liquid, end.slosh)
     low, high = step_extremes(left, surface_rise(model.liquid, middle.slosh), right)
-    state.surface[0] = max(state.surface[0], -low, high)
+    front, rear = cells_rise(model, state.cells_end)
+    state.surface[0] = max(state.surface[0], -low, high, front, rear)
     if state.counts[PHASE] == 0:
         return
     for i in range(WHEELS):
@@ -205,6 +210,7 @@ def _accept(model, state, rows, step):
         return False
     _settle_extremes(model, state, step)
     _copy_point(state.end, state.start)
+    settle_cells(state)
     copy(state.energies, state.energies_before)
     copy(state.losses, state.losses_before)
     state.residual[0] = state.residual[1]
@@ -248,10 +254,9 @@ def _event_step(model, state, step, time):
     """Shorter step where an event falls inside the one in hand (its middle stage is looked at too)."""
     phase = state.counts[PHASE]
     torque = brake_torque(model.brake, time + step, phase)
-    gamma = 2.0 * DIAGONAL
     event_values(model, state.middle, state.locked, state.airborne, torque, state.values)
-    shorter = min(step, shorter_step(state.values_before, state.values, gamma * step))
-    if shorter >= gamma * step:
+    shorter = min(step, shorter_step(state.values_before, state.values, GAMMA * step))
+    if shorter >= GAMMA * step:
         shorter = step
     event_values(model, state.end, state.locked, state.airborne, torque, state.values)
     return min(shorter, shorter_step(state.values_before, state.values, step))
@@ -297,10 +302,7 @@ def advance(model, scratch, state, rows, most_steps):
         tries = 0
         rejected = False
         while not accepted:
-            error = take_step(
-                model, scratch, state.work, state.start, state.middle, state.end,
-                state.energies, state.locked, time, step, state.counts[PHASE],
-            )  # fmt: skip
+            error = take_step(model, scratch, state, time, step)
             if not (0.0 <= error <= 1.0):
                 state.counts[REJECTED] += 1
                 rejected = True

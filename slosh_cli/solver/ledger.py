@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.solver.cells import cells_energy
 from slosh_cli.solver.stage import running_resistance
 from slosh_cli.tank.modal import liquid_energy, liquid_loss
 from slosh_cli.track.moving import rail_ledger
@@ -16,8 +17,8 @@ KINETIC, ELASTIC, SLOSH = range(3)
 
 
 @inner_kernel
-def balance(model, point, energies):
-    """Energies (J) now into `energies` (3,), powers (W) into `point.power` (7,)."""
+def balance(model, cells, point, energies):
+    """Energies (J) now into `energies` (3,), powers (W) into `point.power` (7,); `cells` as they are at the point."""
     wagon = model.wagon
     q, v, power = point.q, point.v, point.power
     speed = v[0]
@@ -53,6 +54,7 @@ def balance(model, point, energies):
     power[FOUNDATION] = foundation
     power[RESISTANCE] = resistance * speed
     power[SLOSH_DAMPING] = liquid_loss(model.liquid, point.slosh_rate)
-    energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic
+    cells_kinetic, cells_potential = cells_energy(model, cells, point)
+    energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic + cells_kinetic
     energies[ELASTIC] = elastic - tilt + rail_elastic + contact_energy
-    energies[SLOSH] = gravity + tilt + slosh_potential
+    energies[SLOSH] = gravity + tilt + slosh_potential + cells_potential

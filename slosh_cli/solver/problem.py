@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.tank.modal import ModalLiquid
+from slosh_cli.tank.shallow import ShallowLiquid
 from slosh_cli.track.contact import ContactModel
 from slosh_cli.track.mem import RailModel
 from slosh_cli.wagon.brake import Brake
@@ -41,7 +42,11 @@ class Control(NamedTuple):
 
 
 class Model(NamedTuple):
-    """All constants of one stop. The liquid, the brake and the rail are used through their kernels only."""
+    """All constants of one stop. Liquids, brake and rail are used through their kernels only.
+
+    The liquid may be modes (`liquid`), cells (`shallow`), or neither: a frozen load. `tank_push`, `tank_turn` (15,) are
+    the wagon's accelerations per newton along x at the tank's bottom centre and per newton metre in the car's pitch.
+    """
 
     wagon: WagonModel
     liquid: ModalLiquid
@@ -49,6 +54,9 @@ class Model(NamedTuple):
     contact: ContactModel
     brake: Brake
     control: Control
+    shallow: ShallowLiquid
+    tank_push: Array
+    tank_turn: Array
 
 
 class Point(NamedTuple):
@@ -71,6 +79,14 @@ class Point(NamedTuple):
     creep: Array
     torque: Array
     power: Array
+
+
+class Cells(NamedTuple):
+    """A shallow-water liquid at one instant: wetted area m^2, flow m^3/s and depth m of each cell, (cells,)."""
+
+    area: Array
+    flow: Array
+    depth: Array
 
 
 def empty_point(unknowns: int, modes: int) -> Point:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.solver.cells import FORCE, MOMENT, cells_rise
 from slosh_cli.solver.problem import LOSSES
-from slosh_cli.solver.step import GAMMA
+from slosh_cli.solver.method import GAMMA
 from slosh_cli.track.contact import creep_force, normal_force
 from slosh_cli.wagon.brake import brake_torque
 from slosh_cli.wagon.coordinates import COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
@@ -21,7 +22,9 @@ RAIL_COLUMN = TORQUE_COLUMN + WHEELS
 ENERGY_COLUMN = RAIL_COLUMN + WHEELS
 LOSS_COLUMN = ENERGY_COLUMN + 3
 RESIDUAL_COLUMN = LOSS_COLUMN + LOSSES
-SLOSH_COLUMN = RESIDUAL_COLUMN + 1
+CELLS_COLUMN = RESIDUAL_COLUMN + 1
+"""Force, moment, rise at the front and at the rear wall of a shallow-water liquid."""
+SLOSH_COLUMN = CELLS_COLUMN + 4
 
 
 @inner_kernel
@@ -72,6 +75,12 @@ def record_row(model, state, row, time, step, part, phase):
             state.losses_before[k], start.power[k], state.losses[k], end.power[k], step, part
         )
     row[RESIDUAL_COLUMN] = (1.0 - part) * state.residual[0] + part * state.residual[1]
+    row[CELLS_COLUMN] = state.push[FORCE]
+    row[CELLS_COLUMN + 1] = state.push[MOMENT]
+    front, rear = cells_rise(model, state.cells_start)
+    front_end, rear_end = cells_rise(model, state.cells_end)
+    row[CELLS_COLUMN + 2] = (1.0 - part) * front + part * front_end
+    row[CELLS_COLUMN + 3] = (1.0 - part) * rear + part * rear_end
     modes = start.slosh.size
     for n in range(modes):
         row[SLOSH_COLUMN + n] = _hermite(

@@ -49,8 +49,8 @@ class Run:
 def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel | None = None) -> Run:
     """Run the stop to its end. Raises Cancelled when `cancel` is set before that."""
     model, modes = problem.model, problem.start.slosh.size
-    state = new_state(problem.start, EVENT_COUNT, FIRST_STEP)
-    scratch = new_scratch(problem.start.rail.size, modes)
+    state = new_state(problem.start, problem.cells, EVENT_COUNT, FIRST_STEP)
+    scratch = new_scratch(problem.start.rail.size, modes, problem.cells.area.size)
     per_step = int(model.control.longest_step / model.control.interval) + 2
     buffer = np.zeros((max(2048, 2 * per_step), SLOSH_COLUMN + 2 * modes))
     filled: list[Array] = []

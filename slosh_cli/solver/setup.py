@@ -9,10 +9,11 @@ import numpy as np
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver.initial import initial_point
-from slosh_cli.solver.problem import Array, Control, Model, Point
+from slosh_cli.solver.problem import Array, Cells, Control, Model, Point
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
+from slosh_cli.tank.still import no_cells, shallow_liquid
 from slosh_cli.track.contact import contact_model
 from slosh_cli.track.mem import RailModel, critical_speed, rail_model
 from slosh_cli.wagon.brake import Brake
@@ -46,6 +47,7 @@ class Problem:
 
     model: Model
     start: Point
+    cells: Cells
 
     @property
     def weight(self) -> float:
@@ -56,13 +58,17 @@ class Problem:
 def problem(scenario: Scenario) -> Problem:
     """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
     load = frozen_load(scenario.tank)
-    wagon = wagon_model(scenario.wagon, scenario.tank.bottom_height, load)
+    flowing = scenario.tank.liquid.model == "shallow-water"
+    wagon = wagon_model(scenario.wagon, scenario.tank.bottom_height, load, carried=not flowing)
     liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
     rail = rail_model(scenario.track, wheel_positions(scenario.wagon))
     contact = contact_model(scenario.contact, wagon.wheel_radius)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
     start = initial_point(wagon, rail, contact, scenario.braking.initial_speed, liquid.mu.size)
+    shallow, cells = shallow_liquid(scenario.tank, GRAVITY, HALF) if flowing else no_cells()
+    turn = np.zeros(COORDINATES)
+    turn[CAR_PITCH] = 1.0
     model = Model(
         wagon=wagon,
         liquid=liquid,
@@ -70,8 +76,11 @@ def problem(scenario: Scenario) -> Problem:
         contact=contact,
         brake=Brake(scenario.braking.torque, scenario.braking.onset),
         control=_control(scenario, wagon, liquid, start, contact.stiffness),
+        shallow=shallow,
+        tank_push=np.linalg.solve(wagon.mass, wagon.tank_row),
+        tank_turn=np.linalg.solve(wagon.mass, turn),
     )
-    return Problem(model, start)
+    return Problem(model, start, Cells(*cells))
 
 
 def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:

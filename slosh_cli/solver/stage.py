@@ -46,7 +46,7 @@ def prepare_stage(model, scratch, work, step, speed, acceleration):
 
 
 @inner_kernel
-def _linear_right(model, scratch, base, step):
+def _linear_right(model, scratch, base, step, push, turn):
     """Forces on the wagon that do not depend on the stage's accelerations, into `scratch.right`."""
     wagon, right = model.wagon, scratch.right
     for i in range(COORDINATES):
@@ -56,8 +56,8 @@ def _linear_right(model, scratch, base, step):
         right[i] = total
     _, _, _, force, moment = liquid_reaction(model.liquid, base.slosh, base.slosh_rate, step, base.q[CAR_PITCH])
     for i in range(COORDINATES):
-        right[i] += force * wagon.tank_row[i]
-    right[CAR_PITCH] += moment
+        right[i] += (force + push) * wagon.tank_row[i]
+    right[CAR_PITCH] += moment + turn
 
 
 @inner_kernel
@@ -217,15 +217,16 @@ def _newton(model, scratch, work, base, point, locked, step, torque, free):
 
 
 @inner_kernel
-def solve_stage(model, scratch, work, base, point, locked, step, torque):
+def solve_stage(model, scratch, work, base, point, locked, step, torque, push, turn):
     """Solve one stage; `point` enters with a guess of its accelerations and wheel loads.
 
-    `base` holds the stage's coordinates and velocities without their own accelerations. Returns True when
+    `base` holds the stage's coordinates and velocities without their own accelerations; `push` (N) and `turn` (N m)
+    are force and moment on the tank from a liquid that is carried along beside the stages. Returns True when
     converged: rail, wagon, contacts and liquid then satisfy their equations together.
     """
     rail, contact = model.rail, model.rail.contact
     square = step * step
-    _linear_right(model, scratch, base, step)
+    _linear_right(model, scratch, base, step, push, turn)
     for i in range(WHEELS):
         for j in range(WHEELS):
             scratch.contact_flexibility[i, j] = scratch.flexibility[contact[i], j]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from slosh_cli.solver.problem import LOSSES, Array, Point, empty_point
+from slosh_cli.solver.problem import LOSSES, Array, Cells, Point, empty_point
 from slosh_cli.wagon.coordinates import COORDINATES, WHEELS
 
 # places in State.clock
@@ -21,7 +21,8 @@ class State(NamedTuple):
 
     `losses` (7,) J as in `ledger`, `residual` (3,): before, now, largest; `locked`, `airborne` (4,) flags;
     `locked_time` (4,) s; `least`, `largest` (4,) wheel loads (N) since onset; `surface` (1,) largest rise, m;
-    `load_sum` (2,): N s of all wheels since onset, and the s.
+    `load_sum` (2,): N s of all wheels since onset, and the s. `push` (7,) is the shallow-water liquid's account with the
+    wagon, see `cells`.
     """
 
     start: Point
@@ -45,6 +46,9 @@ class State(NamedTuple):
     lifted: NDArray[np.int64]
     values_before: Array
     values: Array
+    cells_start: Cells
+    cells_end: Cells
+    push: Array
 
 
 class Scratch(NamedTuple):
@@ -80,10 +84,12 @@ class Scratch(NamedTuple):
     creep_by_speed: Array
     resistance_slope: Array
     free: Array
+    cell_work: Array
+    cell_sums: Array
 
 
-def new_scratch(unknowns: int, modes: int) -> Scratch:
-    """Work space for a rail of `unknowns` and a liquid of `modes`."""
+def new_scratch(unknowns: int, modes: int, cells: int) -> Scratch:
+    """Work space for a rail of `unknowns` and a liquid of `modes` and `cells`."""
     square, row = (COORDINATES, COORDINATES), COORDINATES
     return Scratch(
         base=empty_point(unknowns, modes),
@@ -101,6 +107,8 @@ def new_scratch(unknowns: int, modes: int) -> Scratch:
         **{name: np.zeros(WHEELS) for name in _WHEEL_VECTORS},
         resistance_slope=np.zeros(1),
         free=np.zeros(WHEELS),
+        cell_work=np.zeros((10, cells + 1)),
+        cell_sums=np.zeros(4),
     )
 
 
@@ -111,8 +119,8 @@ _WHEEL_VECTORS = (
 )  # fmt: skip
 
 
-def new_state(start: Point, events: int, first_step: float) -> State:
-    """State at t = 0 from the initial `start`; (events,) event values; the first step to try in s."""
+def new_state(start: Point, cells: Cells, events: int, first_step: float) -> State:
+    """State at t = 0 from the initial `start` and `cells`; (events,) event values; the first step to try in s."""
     unknowns, modes = start.rail.size, start.slosh.size
     clock = np.zeros(8)
     clock[NEXT_STEP] = first_step
@@ -139,4 +147,7 @@ def new_state(start: Point, events: int, first_step: float) -> State:
         lifted=np.zeros(1, dtype=np.int64),
         values_before=np.ones(events),
         values=np.ones(events),
+        cells_start=cells,
+        cells_end=Cells._make(column.copy() for column in cells),
+        push=np.zeros(7),
     )

@@ -7,27 +7,18 @@ implicit method of order 2, L-stable, with an embedded third-order companion: R.
 
 from __future__ import annotations
 
-import math
-
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.solver.cells import FORCE, MOMENT, OWED_FORCE, carry_cells, expect_push
 from slosh_cli.solver.dense import solve_dense
 from slosh_cli.solver.ledger import balance
+from slosh_cli.solver.method import DIAGONAL, ERROR_END, ERROR_MIDDLE, ERROR_START, GAMMA, OUTER
 from slosh_cli.solver.stage import RIGHT_HAND_SIDES, add_load_change, prepare_stage, solve_stage
+from slosh_cli.solver.state import PHASE
 from slosh_cli.track.banded import solve_banded_one
 from slosh_cli.track.moving import rail_residual
 from slosh_cli.track.vectors import copy
 from slosh_cli.wagon.brake import brake_torque
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
-
-GAMMA = 2.0 - math.sqrt(2.0)
-"""The middle stage lies at this part of the step."""
-DIAGONAL = 0.5 * GAMMA
-OUTER = 0.25 * math.sqrt(2.0)
-"""Weights of start and middle; the end has `DIAGONAL`."""
-ERROR_START = (4.0 * OUTER - 1.0) / 3.0
-ERROR_MIDDLE = -1.0 / 3.0
-ERROR_END = 2.0 * DIAGONAL / 3.0
-"""Weights less those of the third-order companion."""
 
 
 @inner_kernel
@@ -60,30 +51,41 @@ def _guess(source, point):
 
 
 @inner_kernel
-def take_step(model, scratch, work, start, middle, end, energies, locked, time, step, phase):
-    """Try a step of `step` (s) from `start` at `time` (s).
+def take_step(model, scratch, state, time, step):
+    """Try a step of `step` (s) from `state.start` at `time` (s).
 
-    Returns the error over the allowed one, negative where a stage could not be solved. Fills `middle` and `end`, their
-    powers, and the energies (3,) at the end. `start.power` must be known.
+    Returns the error over the allowed one, negative where a stage could not be solved. Fills `state.middle` and
+    `state.end`, their powers, and the energies at the end. `state.start.power` must be known.
     """
+    start, middle, end = state.start, state.middle, state.end
+    work, locked, phase = state.work, state.locked, state.counts[PHASE]
+    wet = model.shallow.cells > 0
+    if wet and not expect_push(model, scratch, state, step):
+        return -1.0
     implicit = DIAGONAL * step
     speed = start.v[0] + step * start.a[0]
     prepare_stage(model, scratch, work, implicit, speed, start.a[0])
-    base = scratch.base
+    base, push = scratch.base, state.push
     _predict_point(start, start, implicit, 0.0, implicit, base)
     _guess(start, middle)
     torque = brake_torque(model.brake, time + GAMMA * step, phase)
-    if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque):
+    if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0
     _predict_point(start, middle, OUTER * step, OUTER * step, implicit, base)
     _guess(middle, end)
     torque = brake_torque(model.brake, time + step, phase)
-    if not solve_stage(model, scratch, work, base, end, locked, implicit, torque):
+    if not solve_stage(model, scratch, work, base, end, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0
     error = _error(model, scratch, work, start, middle, end, locked, step)
+    if wet:
+        if not carry_cells(model, scratch, state, step):
+            return -1.0
+        control = model.control
+        owed = abs(push[OWED_FORCE]) * model.tank_push[0]
+        error = max(error, owed / (control.speed_scale[0] * control.local_tolerance))
     if error <= 1.0:
-        balance(model, middle, energies)
-        balance(model, end, energies)
+        balance(model, state.cells_start, middle, state.energies)
+        balance(model, state.cells_end, end, state.energies)
     return error
 
 

@@ -72,11 +72,11 @@ class SloshTank(LoadedTank, Protocol):
 
 
 def slosh_modes(tank: SloshTank) -> tuple[SloshMode, ...]:
-    """The slosh modes of the whole tank the scenario asks for: none for a rigid load, given or computed ones.
+    """The slosh modes of the whole tank the scenario asks for: given or computed; none for other models.
 
     Raises TankError where they cannot be computed.
     """
-    if tank.liquid.model == "rigid":
+    if tank.liquid.model != "modal":
         return ()
     if tank.coefficients == "computed":
         return computed_modes(tank, tank.modes)

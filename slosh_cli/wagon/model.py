@@ -72,7 +72,7 @@ def wheel_positions(wagon: Wagon) -> Array:
     )
 
 
-def _mass_matrix(wagon: Wagon, tank_row: Array, load: FrozenLoad) -> Array:
+def _mass_matrix(wagon: Wagon, tank_row: Array, load: FrozenLoad, carried: bool) -> Array:
     radius = wagon.wheelset.wheel_radius
     car = wagon.car_body
     load_row = tank_row + load.centre_height * _unit(CAR_PITCH)
@@ -80,7 +80,7 @@ def _mass_matrix(wagon: Wagon, tank_row: Array, load: FrozenLoad) -> Array:
         (car.mass, car_at_height(wagon, car.centre_height)),
         (car.mass, _unit(CAR_HEAVE)),
         (car.pitch_inertia, _unit(CAR_PITCH)),
-        (load.mass, load_row),
+        (load.mass if carried else 0.0, load_row),
         (load.mass, _unit(CAR_HEAVE)),
         (load.pitch_inertia, _unit(CAR_PITCH)),
     ]
@@ -117,11 +117,15 @@ def _suspension_matrices(wagon: Wagon) -> tuple[Array, Array]:
     return stiffness, damping
 
 
-def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad) -> WagonModel:
-    """Assemble the half wagon; `load` is the whole tank's, `tank_bottom_height` (m) above the rail head."""
+def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, carried: bool = True) -> WagonModel:
+    """Assemble the half wagon; `load` is the whole tank's, `tank_bottom_height` (m) above the rail head.
+
+    A load that is not `carried` along x has a motion of its own there: its longitudinal inertia and its weight's part
+    in the car's pitch are then left to the liquid (model section 10).
+    """
     tank_row = car_at_height(wagon, tank_bottom_height)
     stiffness, damping = _suspension_matrices(wagon)
-    gravity_stiffness = -0.5 * load.mass * GRAVITY * load.centre_height
+    gravity_stiffness = -0.5 * load.mass * GRAVITY * load.centre_height if carried else 0.0
     stiffness[CAR_PITCH, CAR_PITCH] += gravity_stiffness
     weight = np.zeros(COORDINATES)
     weight[CAR_HEAVE] = wagon.car_body.mass + load.mass
@@ -129,7 +133,7 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad) -> Wa
     weight[WHEEL_HEAVE : WHEEL_HEAVE + WHEELS] = wagon.wheelset.mass
     resistance = wagon.running_resistance
     return WagonModel(
-        mass=_mass_matrix(wagon, tank_row, load),
+        mass=_mass_matrix(wagon, tank_row, load, carried),
         damping=damping,
         stiffness=stiffness,
         weight=-0.5 * GRAVITY * weight,

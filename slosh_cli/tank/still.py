@@ -1,0 +1,61 @@
+"""The shallow-water liquid of a scenario's tank, at rest."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
+from slosh_cli.tank.section import RectangularSection, section_of
+from slosh_cli.tank.section_table import section_table
+from slosh_cli.tank.shallow import ShallowLiquid
+
+Array = NDArray[np.float64]
+CellColumns = tuple[Array, Array, Array]
+"""Area m^2, flow m^3/s and depth m of every cell."""
+
+
+class FlowingLiquid(LoadedLiquid, Protocol):
+    """A scenario's liquid with the numbers of its shallow-water model."""
+
+    @property
+    def cells(self) -> int:
+        """Finite volumes along the tank."""
+
+    @property
+    def slot_speed(self) -> float:
+        """Speed of pressure waves where the section runs full, m/s."""
+
+
+class FlowingTank(LoadedTank, Protocol):
+    """A scenario's tank with such a liquid."""
+
+    @property
+    def liquid(self) -> FlowingLiquid:
+        """What the tank holds."""
+
+
+def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[ShallowLiquid, CellColumns]:
+    """Constants for the `share` (0.5: one rail's half) of the tank's liquid, and its cells, level and at rest."""
+    section, load = section_of(tank), frozen_load(tank)
+    depth, cells = tank.fill * section.height, tank.liquid.cells
+    liquid = ShallowLiquid(
+        cells=cells,
+        spacing=tank.length / cells,
+        density=share * tank.liquid.density,
+        gravity=gravity,
+        centre_height=load.centre_height,
+        mass=share * load.mass,
+        still_depth=depth,
+        table=section_table(section, gravity, tank.liquid.slot_speed),
+    )
+    return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
+
+
+def no_cells() -> tuple[ShallowLiquid, CellColumns]:
+    """The absence of a shallow-water liquid, for loads that are frozen or described by modes."""
+    table = section_table(RectangularSection(1.0, 1.0), 1.0, 1.0)
+    liquid = ShallowLiquid(0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, table)
+    return liquid, (np.zeros(0), np.zeros(0), np.zeros(0))
