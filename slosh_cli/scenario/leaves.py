@@ -214,26 +214,23 @@ class Version(Leaf):
 
 @dataclass(frozen=True)
 class Choice(Leaf):
-    """One of a few words. `later` are words that the format knows and this version cannot do yet."""
+    """One of a few words."""
 
     options: tuple[str, ...]
-    later: tuple[str, ...] = ()
 
     def parse(self, value: object) -> str:
         if isinstance(value, str) and value in self.options:
             return value
-        raise not_an_option(value, self.options, self.later)
+        raise not_an_option(value, self.options)
 
     def json_schema(self) -> dict[str, Any]:
         return {"enum": list(self.options)}
 
 
-def not_an_option(value: object, options: Sequence[str], later: Sequence[str] = ()) -> ValueRefused:
+def not_an_option(value: object, options: Sequence[str]) -> ValueRefused:
     """The refusal of a word that is none of `options`, with a guess at the intended one."""
     listed = one_of(options)
     rule = f"must be {listed}"
-    if isinstance(value, str) and value in later:
-        return ValueRefused(rule, f"`{value}`, which is not available in this version", f"write {listed}")
     return ValueRefused(rule, plain(value), f"write {guess(value, options) or listed}")
 
 

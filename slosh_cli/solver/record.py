@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel, kernel
 from slosh_cli.solver.cells import FORCE, MOMENT, cells_rise
-from slosh_cli.solver.problem import LOSSES
 from slosh_cli.solver.method import GAMMA
+from slosh_cli.solver.problem import LOSSES
 from slosh_cli.track.contact import creep_force, normal_force
 from slosh_cli.wagon.brake import brake_torque
 from slosh_cli.wagon.coordinates import COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS

@@ -77,8 +77,8 @@ def problem(scenario: Scenario) -> Problem:
         brake=Brake(scenario.braking.torque, scenario.braking.onset),
         control=_control(scenario, wagon, liquid, start, contact.stiffness),
         shallow=shallow,
-        tank_push=np.linalg.solve(wagon.mass, wagon.tank_row),
-        tank_turn=np.linalg.solve(wagon.mass, turn),
+        tank_push=np.asarray(np.linalg.solve(wagon.mass, wagon.tank_row), dtype=np.float64),
+        tank_turn=np.asarray(np.linalg.solve(wagon.mass, turn), dtype=np.float64),
     )
     return Problem(model, start, Cells(*cells))
 

@@ -136,12 +136,7 @@ def tidy(value: float) -> float:
 
 
 def with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
-    """`axes` with those of `others` put in the place of the ones they share a key with, or before them all."""
-    known = {axis.key: axis for axis in axes}
-    new = []
-    for axis in others:
-        if axis.key in known:
-            known[axis.key] = axis
-        else:
-            new.append(axis)
-    return (*new, *known.values())
+    """`axes`, then `others`; one of these that shares its key with one of those takes its place."""
+    found = {axis.key: axis for axis in axes}
+    found |= {axis.key: axis for axis in others}
+    return tuple(found.values())

@@ -119,10 +119,7 @@ class _Reader:
 def _values(spec: Any) -> tuple[str, ...]:
     if isinstance(spec, str):
         return values_of(spec)
-    if isinstance(spec, Sequence):
-        return tuple(dict.fromkeys(text for entry in spec for text in _values_of_entry(entry)))
-    return listed([spec])
-
-
-def _values_of_entry(entry: Any) -> tuple[str, ...]:
-    return values_of(entry) if isinstance(entry, str) else listed([entry])
+    if not isinstance(spec, Sequence) or not spec:
+        return listed([] if spec == [] else [spec])
+    texts = (values_of(entry) if isinstance(entry, str) else listed([entry]) for entry in spec)
+    return tuple(dict.fromkeys(text for group in texts for text in group))

@@ -56,14 +56,11 @@ CHOICES = (
     ),
     one(
         "liquid model misspelt", "model: modal", "model: rigit",
-        (26, "tank.liquid.model", "must be `rigid` or `modal`", "`rigit`", "write `rigid`"),
+        (26, "tank.liquid.model", "must be `rigid`, `modal` or `shallow-water`", "`rigit`", "write `rigid`"),
     ),
     one(
-        "liquid model to come", "model: modal", "model: shallow-water",
-        (
-            26, "tank.liquid.model", "must be `rigid` or `modal`", "not available in this version",
-            "write `rigid` or `modal`",
-        ),
+        "liquid model half remembered", "model: modal", "model: shallow",
+        (26, "tank.liquid.model", "must be `rigid`, `modal` or `shallow-water`", "`shallow`", "write `shallow-water`"),
     ),
     one(
         "adhesion misspelt", "adhesion: dry", "adhesion: Wett",

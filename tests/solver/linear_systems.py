@@ -5,7 +5,7 @@ Without contact stiffness, brake, resistance and weight the equations of a stop 
 never exceeded and a longest step that always is.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import expm
@@ -45,8 +45,8 @@ def wagon_of(scenario, stiffness_factor):
 
     A soft spring to the ground on every wheel's heave holds what contacts would hold.
     """
-    model = problem(scenario).model
-    wagon, liquid = model.wagon, model.liquid
+    stop = problem(scenario)
+    model, wagon, liquid = stop.model, stop.model.wagon, stop.model.liquid
     modes = liquid.mu.size
     size = COORDINATES + modes
     mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
@@ -74,11 +74,12 @@ def wagon_of(scenario, stiffness_factor):
         weight=np.zeros(COORDINATES),
         resistance=np.zeros(3),
     )
-    return system, model._replace(wagon=free)
+    return system, replace(stop, model=model._replace(wagon=free))
 
 
-def linear_model(model, step, end):
-    """`model` without contacts and brake, to be integrated with a fixed `step` (s) until `end` (s)."""
+def linear_stop(stop, step, end):
+    """`stop` without contacts and brake, to be integrated with a fixed `step` (s) until `end` (s)."""
+    model = stop.model
     control = model.control._replace(
         local_tolerance=1e30,
         approach_scale=np.inf,
@@ -88,15 +89,16 @@ def linear_model(model, step, end):
         interval=1e9,
     )
     contact = model.contact._replace(stiffness=0.0)
-    return model._replace(contact=contact, brake=Brake(0.0, np.inf), control=control)
+    return replace(stop, model=model._replace(contact=contact, brake=Brake(0.0, np.inf), control=control))
 
 
-def march(model, start, step):
-    """Final point after integrating `model` from `start` in fixed steps of `step` (s) up to its time limit."""
-    state = new_state(start, EVENT_COUNT, step)
+def march(stop, start, step):
+    """Final point after integrating `stop` from `start` in fixed steps of `step` (s) up to its time limit."""
+    model, modes = stop.model, start.slosh.size
+    state = new_state(start, stop.cells, EVENT_COUNT, step)
     state.airborne[:] = True
-    scratch = new_scratch(start.rail.size, start.slosh.size)
-    rows = np.zeros((8, SLOSH_COLUMN + 2 * start.slosh.size))
+    scratch = new_scratch(start.rail.size, modes, stop.cells.area.size)
+    rows = np.zeros((8, SLOSH_COLUMN + 2 * modes))
     steps = round(model.control.time_limit / step)
     assert loop.begin(model, scratch, state)
     outcome = loop.advance(model, scratch, state, rows, steps + 10)
@@ -107,8 +109,9 @@ def march(model, start, step):
     return state.start
 
 
-def started(model, x, v, rail=None, rail_rate=None):
+def started(stop, x, v, rail=None, rail_rate=None):
     """A point with these displacements and velocities (wagon and slosh), moving at the cruising speed on top."""
+    model = stop.model
     unknowns, modes = model.rail.mass_form.shape[0], model.liquid.mu.size
     start = empty_point(unknowns, modes)
     start.q[:], start.v[:] = x[:COORDINATES], v[:COORDINATES]

@@ -1,10 +1,11 @@
 """Order and stability of the time integrator on stiff linear systems with known solutions (model section 11)."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from linear_systems import LinearSystem, linear_model, march, reached, started, tr_bdf2, wagon_of
+from linear_systems import LinearSystem, linear_stop, march, reached, started, tr_bdf2, wagon_of
 from scipy.linalg import eig
 
 from slosh_cli.track.mem import fitted_nodes
@@ -52,12 +53,12 @@ def test_the_system_is_stiff(stiff):
 
 def test_order_2_on_the_stiff_wagon_with_slosh(stiff):
     """Acceptance: order 2 +- 0.1 on a stiff linear system with known solution, through the program's time loop."""
-    system, model = stiff
+    system, stop = stiff
     x, v = displaced(system.mass.shape[0])
     exact_x, exact_v = system.exact(x, v, END)
     errors = []
     for step in STEPS:
-        got_x, got_v = reached(march(linear_model(model, step, END), started(model, x, v), step))
+        got_x, got_v = reached(march(linear_stop(stop, step, END), started(stop, x, v), step))
         got_x[0] -= 20.0 * END
         errors.append([np.abs(got_x - exact_x).max(), np.abs(got_v - exact_v).max()])
     orders = [np.log2(np.array(coarse) / fine) for coarse, fine in pairwise(errors)]
@@ -67,7 +68,7 @@ def test_order_2_on_the_stiff_wagon_with_slosh(stiff):
 
 def test_stiff_motion_is_killed_not_rung(stiff):
     """L-stability: after ten long steps nothing is left of motions that the exact solution lost long ago."""
-    system, model = stiff
+    system, stop = stiff
     fast = [one for rate, one in zip(*modes_of(system), strict=True) if rate.real < -500.0]
     assert len(fast) == 6
     size = system.mass.shape[0]
@@ -75,7 +76,7 @@ def test_stiff_motion_is_killed_not_rung(stiff):
         # displacement and velocity in proportion, the larger of them 0.01 (m, rad or their like per second)
         vector = np.real(mode * np.exp(-1j * np.angle(mode[np.abs(mode).argmax()])))
         x, v = np.split(vector * 1e-2 / np.abs(vector).max(), 2)
-        end_x, end_v = reached(march(linear_model(model, 0.05, 0.5), started(model, x, v), 0.05))
+        end_x, end_v = reached(march(linear_stop(stop, 0.05, 0.5), started(stop, x, v), 0.05))
         exact_x, exact_v = system.exact(x, v, 0.5)
         assert np.abs(end_x[1:size] - exact_x[1:]).max() < 1e-6
         assert np.abs(end_v - exact_v).max() < 1e-6
@@ -85,16 +86,16 @@ def test_stiff_motion_is_killed_not_rung(stiff):
 @pytest.mark.parametrize("z", [1e-2, 1.0, 30.0, 1e3, 1e5])
 def test_undamped_oscillator_is_amplified_as_tr_bdf2_does(stiff, z, wheel):
     """One wheel on a spring alone: every step multiplies `v + i omega x` by the method's rational function."""
-    _, model = stiff
+    _, stop = stiff
     mass, omega, step, steps = 700.0, 40.0, z / 40.0, 3
-    wagon = model.wagon._replace(
+    wagon = stop.model.wagon._replace(
         mass=np.diag(np.full(15, mass)), damping=np.zeros((15, 15)), stiffness=np.zeros((15, 15))
     )
     wagon.stiffness[wheel, wheel] = mass * omega**2
     x = np.zeros(17)
     x[wheel] = 1e-3
-    lone = model._replace(wagon=wagon)
-    point = march(linear_model(lone, step, steps * step), started(lone, x, 0 * x), step)
+    lone = replace(stop, model=stop.model._replace(wagon=wagon))
+    point = march(linear_stop(lone, step, steps * step), started(lone, x, 0 * x), step)
     expected = tr_bdf2(1j * z) ** steps * 1j * omega * 1e-3
     got = point.v[wheel] + 1j * omega * point.q[wheel]
     assert abs(got - expected) < 1e-9 * abs(1j * omega * 1e-3)
@@ -133,8 +134,8 @@ def rail_system(rail, speed):
 def test_order_2_on_the_moving_rail(shipped):
     """The rail of a wagon at constant speed, let go from a smooth dent: stiff, convected, damped."""
     scenario = shipped("paper_160_solid", "track.domain.length=26 m", "track.domain.element_length=0.9 m")
-    _, model = wagon_of(scenario, 1.0)
-    rail, end, rest = model.rail, 0.02, np.zeros(15)
+    _, stop = wagon_of(scenario, 1.0)
+    rail, end, rest = stop.model.rail, 0.02, np.zeros(15)
     system = rail_system(rail, 20.0)
     nodes = fitted_nodes(wheel_positions(scenario.wagon), 26.0, 0.9)
     dent = -1e-3 * np.exp(-((nodes / 3.0) ** 2))
@@ -142,16 +143,16 @@ def test_order_2_on_the_moving_rail(shipped):
     exact_y, exact_rate = system.exact(shape, 0 * shape, end)
     errors = []
     for step in (2e-4, 1e-4, 5e-5):
-        start = started(model, rest, rest, shape, 0 * shape)
-        point = march(linear_model(model, step, end), start, step)
+        start = started(stop, rest, rest, shape, 0 * shape)
+        point = march(linear_stop(stop, step, end), start, step)
         errors.append([np.abs(point.rail - exact_y).max(), np.abs(point.rail_rate - exact_rate).max()])
     orders = [np.log2(np.array(coarse) / fine) for coarse, fine in pairwise(errors)]
     assert np.array(orders) == pytest.approx(2.0, abs=0.1)
 
 
 def test_rail_vibrations_far_faster_than_the_step_die_at_once(shipped):
-    _, model = wagon_of(shipped("paper_160_solid"), 1.0)
-    rng, size = np.random.default_rng(2), model.rail.mass_form.shape[0]
+    _, stop = wagon_of(shipped("paper_160_solid"), 1.0)
+    rng, size = np.random.default_rng(2), stop.model.rail.mass_form.shape[0]
     shape, rest = 1e-3 * rng.normal(size=size), np.zeros(15)
-    point = march(linear_model(model, 0.25, 1.0), started(model, rest, rest, shape, 0 * shape), 0.25)
+    point = march(linear_stop(stop, 0.25, 1.0), started(stop, rest, rest, shape, 0 * shape), 0.25)
     assert np.abs(point.rail).max() < 1e-3 * np.abs(shape).max()
