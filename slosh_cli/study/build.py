@@ -59,7 +59,8 @@ def paper_wagon() -> Scenario:
 def _source(wishes: Wishes) -> tuple[str, str, Scenario, tuple[Axis, ...]]:
     """What messages call the source, the study's name, the base scenario and the axes of a study file."""
     if wishes.file is None:
-        return PAPER_STUDY, PAPER_STUDY, load_scenario(find_packaged(PAPER_WAGON), wishes.overrides), ()
+        wagon = load_scenario(find_packaged(PAPER_WAGON), wishes.overrides)
+        return PAPER_STUDY, PAPER_STUDY if wagon.name == PAPER_WAGON else wagon.name, wagon, ()
     if is_study_file(wishes.file):
         study = read_study_file(wishes.file)
         return str(wishes.file), study.name, load_scenario(study.base, wishes.overrides), study.axes

@@ -160,7 +160,7 @@ class Cluster:
         try:
             return self._done.get(timeout=_POLL_SECONDS)
         except queue.Empty:
-            if self._client.status in ("closed", "closing"):
+            if self._client.status != "running":  # the scheduler forgets what a client that went away had asked for
                 raise self._lost() from None
             return None
 

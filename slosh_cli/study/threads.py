@@ -43,7 +43,7 @@ class Threads:
         with ThreadPoolExecutor(self.threads, thread_name_prefix="stop") as pool:
             try:
                 for stop in stops:
-                    waiting.add(pool.submit(solve, stop, cancel))
+                    waiting.add(pool.submit(_solve, stop, cancel))
                     if len(waiting) >= self.threads * (1 + _WAITING):
                         done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                         yield _finished(done, cancel)
@@ -58,6 +58,15 @@ class Threads:
                 cancel.set()  # the pool waits for its threads: they must not go on to the end of their stops
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
+
+
+def _solve(stop: Stop, cancel: Event) -> Outcome:
+    """A stop that was waiting its turn when the study was given up is not begun."""
+    from slosh_cli.solver.run import Cancelled
+
+    if cancel.is_set():
+        raise Cancelled
+    return solve(stop, cancel)
 
 
 def _finished(futures: Iterable[Future[Outcome]], cancel: Event) -> list[Outcome]:

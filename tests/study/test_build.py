@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import PAPER
+from study_tools import PAPER
 
 from slosh_cli.errors import ScenarioError, UsageError
 from slosh_cli.scenario import Scenario, replace

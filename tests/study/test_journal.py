@@ -89,7 +89,7 @@ def test_a_batch_is_committed_whole_or_not_at_all(path: Path) -> None:
 @pytest.mark.parametrize("text", ["this is no journal, " * 100, "SQLite format 3\0" + "x" * 5000])
 def test_a_damaged_journal_is_refused_with_a_way_out(path: Path, text: str) -> None:
     path.write_text(text)
-    with pytest.raises(FileError, match="damaged or no journal of slosh .*--fresh"):
+    with pytest.raises(FileError, match=r"damaged or no journal of slosh .*--fresh"):
         Journal(path)
     remove(path)
     with Journal(path) as journal:
@@ -132,7 +132,7 @@ import resource, sys
 from pathlib import Path
 from slosh_cli.study.journal import Journal
 from slosh_cli.study.outcome import Outcome
-resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 with Journal(Path(sys.argv[1])) as journal:
     for k in range(1000):
         journal.add([Outcome(k, f"key {k}", {"status": "stopped", "k": k, "text": "x" * 1000}, True, 0.1)])
@@ -155,7 +155,7 @@ def test_a_full_disk_is_a_clear_error_and_the_journal_stays_sound(path: Path) ->
             answer = journal.answer(f"key {k}")
             assert answer is not None
             assert answer["k"] == k
-    assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 60_000
+    assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 400_000
 
 
 def _hold(folder: str, ready: Any, go: Any) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import QuickSolver
+from study_tools import QuickSolver
 
 from slosh_cli.errors import PhysicsError
 from slosh_cli.results.files import FileError

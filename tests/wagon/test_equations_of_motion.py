@@ -108,7 +108,7 @@ def test_three_wheels_lock_in_this_stop(run):
 @pytest.mark.parametrize("window", [(3.0, 9.0), (5.0, 6.0), (10.0, 14.0), (2.2, 19.0)])
 def test_every_equation_holds_between_the_switches(run, load, window):
     gaps = missing(run, load, *window)
-    assert dict(zip(EQUATIONS, gaps, strict=True)) == pytest.approx(dict.fromkeys(EQUATIONS, 0.0), abs=1e-5)
+    assert dict(zip(EQUATIONS, gaps, strict=True)) == pytest.approx(dict.fromkeys(EQUATIONS, 0.0), abs=3e-5)
 
 
 @pytest.mark.parametrize("window", [(0.1, 17.0), (0.6, 1.6), (1.0, 3.0), (0.45, 2.0)])

@@ -9,6 +9,7 @@ the liquid is part of the car. One rail, half a wagon, x forward, y up, rotation
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,8 @@ class Histories:
 
 @dataclass(frozen=True)
 class Bodies:
-    """Half masses: car with the liquid that does not slosh, slosh body, bogie, wheel (kg); inertias (kg m^2); heights (m).
+    """Half masses (kg), pitch inertia (kg m^2) and heights (m) of the car with the liquid that does not slosh, and of
+    the slosh body; `slosh_height` counts from the car's centre.
 
     `attachment` is how far below the car's centre the secondary springs act: there the weight's overturning moment is
     the `m_l g z_c theta` of model section 3.
@@ -89,7 +91,7 @@ class _Contact:
         return self.torque if time > self.onset + 1e-9 else 0.0
 
     def forces(self, _: Any, time: float, __: int, q: Array, rate: Array) -> Array:
-        """What stands on the left of `M q'' + f = 0`."""
+        """Forward and upward force (N) and moment (N m, nose-up) on a wheel that moves as `q`, `rate` say."""
         normal = self.stiffness * max(-q[1], 0.0) ** 1.5
         creep = 0.0
         if normal > 0.0:
@@ -99,16 +101,15 @@ class _Contact:
             creep = np.sign(slip) * share * normal
         terms = self.resistance
         rolling = (terms.constant + terms.linear * rate[0] + terms.quadratic * rate[0] ** 2) / 8
-        return np.array([creep + rolling, -normal, creep * self.radius - self.braking(time)])
+        return np.array([-creep - rolling, normal, self.braking(time) - creep * self.radius])
 
 
 class _Builder:
-    """Adds bodies and connectors to an exudyn system; every body starts at the origin, so coordinates are displacements."""
+    """Adds bodies and connectors to an exudyn system. Bodies start at the origin: coordinates are displacements."""
 
     def __init__(self, system: Any, scenario: Scenario) -> None:
-        from exudyn import itemInterface
-
-        self.system, self.items = system, itemInterface
+        self.system: Any = system
+        self.items: Any = import_module("exudyn.itemInterface")
         self.speed = scenario.braking.initial_speed
 
     def body(self, mass: float, inertia: float, y: float, spin: float = 0.0) -> tuple[int, int]:
@@ -145,17 +146,21 @@ class _Builder:
         """`its . coordinates of one = others . coordinates of other`, at all times."""
         self.system.AddObject(
             self.items.ObjectConnectorCoordinateVector(
-                markerNumbers=[one, other], scalingMarker0=np.array([its]), scalingMarker1=np.array([others]), offset=[0.0]
+                markerNumbers=[one, other],
+                scalingMarker0=np.array([its]),
+                scalingMarker1=np.array([others]),
+                offset=[0.0],
             )
         )
 
     def watch(self, node: int, velocity: bool = False) -> int:
         """Sensor of a node's coordinates or their rates."""
-        import exudyn as exu
-
+        exu = import_module("exudyn")
         kind = exu.OutputVariableType.Coordinates_t if velocity else exu.OutputVariableType.Coordinates
         return int(
-            self.system.AddSensor(self.items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind))
+            self.system.AddSensor(
+                self.items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind)
+            )
         )
 
 
@@ -189,7 +194,12 @@ def _build(system: Any, scenario: Scenario, mode: SloshMode) -> dict[str, Any]:
         build.tie(its, [1, 0, wagon.bogie.centre_height - pivot], yoke, [1.0 - k, float(k)])
         axle_lines.append((its, low))
         unit = wagon.secondary_suspension
-        build.spring([build.point(bogie, 0, 0), build.point(car, place, -bodies.attachment)], unit.stiffness, unit.damping, -bodies.attachment)
+        build.spring(
+            [build.point(bogie, 0, 0), build.point(car, place, -bodies.attachment)],
+            unit.stiffness,
+            unit.damping,
+            -bodies.attachment,
+        )
         for arm in (0.5 * wagon.bogie.wheelbase, -0.5 * wagon.bogie.wheelbase):
             wheel_nodes.append(_wheel(build, scenario, contact, bogie, arm, sunk_wheel, (its, low)))
     build.tie(axle_lines[0][0], axle_lines[0][1], axle_lines[1][0], axle_lines[1][1])
@@ -241,7 +251,7 @@ def _wheel(
         build.items.ObjectGenericODE2(
             nodeNumbers=[node],
             massMatrix=np.diag([wheelset.mass, wheelset.mass, wheelset.spin_inertia]) / 2,
-            forceUserFunction=lambda *state: contact.forces(*state) + [0, GRAVITY * wheelset.mass / 2, 0],
+            forceUserFunction=lambda *state: contact.forces(*state) - [0, GRAVITY * wheelset.mass / 2, 0],
         )
     )
     build.tie(build.coordinates(wheel), [1, 0, 0], *axle_line)
@@ -276,8 +286,7 @@ def _slosh(build: _Builder, bodies: Bodies, car: int, mode: SloshMode, sunk: flo
 
 def exudyn_stop(scenario: Scenario, mode: SloshMode, duration: float, step: float) -> Histories:
     """The first `duration` s of the scenario's stop on a rigid rail, by the trapezoidal rule in steps of `step` s."""
-    import exudyn as exu
-
+    exu = import_module("exudyn")
     system = exu.SystemContainer().AddSystem()
     sensors = _build(system, scenario, mode)
     system.Assemble()
@@ -287,7 +296,7 @@ def exudyn_stop(scenario: Scenario, mode: SloshMode, duration: float, step: floa
     settings.timeIntegration.newton.relativeTolerance = 1e-9
     settings.solutionSettings.writeSolutionToFile = False
     settings.solutionSettings.sensorsWritePeriod = step
-    settings.timeIntegration.verboseMode = 2
+    settings.timeIntegration.verboseMode = 0
     system.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
     return _read(system, sensors, _Contact(scenario), mode)
 

@@ -1,0 +1,266 @@
+"""A Dask cluster of real processes on this machine: the same rows, and nothing lost when a worker dies."""
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from study_tools import CHEAP, QuickSolver, journal_rows, run_slosh, start_slosh
+
+from slosh_cli.errors import UsageError
+from slosh_cli.study import cluster
+from slosh_cli.study.build import Wishes, build
+from slosh_cli.study.cluster import Cluster, ClusterError, solve_batch, this_version
+
+TABLE = "outputs/cheap/braking_distance.csv"
+JOURNAL = "outputs/cheap/journal.sqlite"
+
+needs_dask = pytest.mark.skipif(shutil.which("dask", path=str(Path(sys.executable).parent)) is None, reason="no Dask")
+
+
+class Processes:
+    """A scheduler and workers, each a process that can be killed."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._environment = os.environ | {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "3"}
+        self.scheduler = self._start("scheduler", "--scheduler-file", "scheduler.json", "--no-dashboard")
+        file = folder / "scheduler.json"
+        deadline = time.monotonic() + 60.0
+        while not file.exists() or not file.read_text().strip().endswith("}"):
+            assert time.monotonic() < deadline, "no scheduler"
+            time.sleep(0.02)
+        self.address = str(json.loads(file.read_text())["address"])
+        self.workers = [self.add_worker() for _ in range(2)]
+
+    def _start(self, what: str, *arguments: str) -> "subprocess.Popen[bytes]":
+        command = [sys.executable, "-m", "dask", what, "--host", "127.0.0.1", *arguments]
+        if what == "scheduler":
+            command += ["--port", "0"]
+        quiet = subprocess.DEVNULL
+        return subprocess.Popen(command, cwd=self._folder, env=self._environment, stdout=quiet, stderr=quiet)
+
+    def add_worker(self) -> "subprocess.Popen[bytes]":
+        return self._start(
+            "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", "scheduler.json"
+        )
+
+    def stop(self) -> None:
+        for process in (*self.workers, self.scheduler):
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            process.wait()
+
+
+@pytest.fixture
+def processes(tmp_path: Path) -> Iterator[Processes]:
+    where = tmp_path / "cluster"
+    where.mkdir()
+    running = Processes(where)
+    yield running
+    running.stop()
+
+
+def sweep(stops: int, *more: object) -> list[object]:
+    return ["sweep", *CHEAP, "--torque", f"2.1:{2 + 0.1 * (stops // 2):g}:0.1", "--json", *more]
+
+
+def folder(parent: Path, name: str) -> Path:
+    made = parent / name
+    made.mkdir()
+    return made
+
+
+@needs_dask
+def test_the_rows_are_the_same_to_the_last_bit_on_one_thread_two_threads_and_a_cluster(
+    tmp_path: Path, processes: Processes
+) -> None:
+    tables = {}
+    grid = ["sweep", "--v0", "60", "--torque", "5:25:10", "--vary", "tank.fill=0.4,0.5", "--set", "name=cheap"]
+    grid += ["--set", "tank.coefficients=computed", "--set", "tank.modes=2", "--json"]
+    for name, how in {"one": ["--jobs", 1], "two": ["--jobs", 2], "dask": ["--cluster", processes.address]}.items():
+        where = folder(tmp_path, name)
+        code, out, err = run_slosh(where, *grid, *how)
+        assert code in (0, 3), err
+        assert json.loads(out)["runs"] == 12
+        tables[name] = (where / TABLE).read_bytes()
+    assert tables["one"] == tables["two"] == tables["dask"]
+    assert len(tables["one"].splitlines()) == 13
+
+
+@needs_dask
+@pytest.mark.parametrize("stops", [120, pytest.param(600, marks=pytest.mark.slow)])
+def test_a_worker_that_is_killed_midway_loses_nothing(tmp_path: Path, processes: Processes, stops: int) -> None:
+    local, remote = folder(tmp_path, "local"), folder(tmp_path, "remote")
+    code, _, err = run_slosh(local, *sweep(stops))
+    assert code in (0, 3), err
+    command = start_slosh(remote, *sweep(stops, "--cluster", processes.address))
+    while len(journal_rows(remote / JOURNAL)) < stops // 6 and command.poll() is None:
+        time.sleep(0.01)
+    processes.workers[0].send_signal(signal.SIGKILL)
+    out, err = command.communicate(timeout=300)
+    assert command.returncode in (0, 3), err
+    answer = json.loads(out)
+    assert (answer["runs"], answer["done"] + answer["failed"], answer["reused"]) == (stops, stops, 0)
+    assert (remote / TABLE).read_bytes() == (local / TABLE).read_bytes()
+    assert "died" not in err
+
+
+@needs_dask
+def test_a_scheduler_that_is_lost_is_a_clear_error_and_the_study_goes_on(tmp_path: Path, processes: Processes) -> None:
+    command = start_slosh(tmp_path, *sweep(2000, "--cluster", processes.address))
+    while len(journal_rows(tmp_path / JOURNAL)) < 10 and command.poll() is None:
+        time.sleep(0.01)
+    processes.scheduler.send_signal(signal.SIGKILL)
+    out, err = command.communicate(timeout=120)
+    assert command.returncode == 2, err
+    error = json.loads(out)["error"]
+    assert error["code"] == "cluster"
+    assert f"lost the Dask scheduler at {processes.address}" in error["message"]
+    assert "every stop received before is kept" in err
+    assert "Traceback" not in err
+    kept = len(journal_rows(tmp_path / JOURNAL))
+    assert kept >= 10
+    _, out, _ = run_slosh(tmp_path, *sweep(60))
+    assert json.loads(out)["reused"] >= min(kept, 10)
+
+
+@needs_dask
+def test_an_address_where_nobody_answers_is_a_clear_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "_CONNECT_SECONDS", 0.3)
+    with pytest.raises(ClusterError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
+        Cluster("tcp://127.0.0.1:1")
+    with pytest.raises(ClusterError, match="no Dask scheduler answers at nonsense:"):
+        Cluster("nonsense:")
+
+
+def test_without_dask_the_user_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError, match=r"slosh-cli\[cluster\]"):
+        Cluster("tcp://127.0.0.1:8786")
+
+
+def test_a_worker_with_another_version_refuses_the_batch() -> None:
+    with pytest.raises(ClusterError, match=r"a worker has slosh .*, but the study needs slosh 99"):
+        solve_batch((), "slosh 99")
+
+
+class StandIn:
+    """A Dask client whose futures end as they are told, at once."""
+
+    status = "running"
+
+    def __init__(self, endings: Any) -> None:
+        self._endings = endings
+        self.batches: list[int] = []
+
+    def nthreads(self) -> dict[str, int]:
+        return {"one": 1, "two": 1}
+
+    def submit(self, function: Any, batch: Any, needed: str, *, pure: bool) -> Any:
+        self.batches.append(len(batch))
+        return self._endings(function, batch, needed)
+
+
+class Future:
+    """A future that has ended with a value or an error."""
+
+    def __init__(self, value: Any = None, error: Exception | None = None, status: str = "") -> None:
+        self._value, self._error = value, error
+        self.status = status or ("error" if error else "finished")
+
+    def add_done_callback(self, call: Any) -> None:
+        call(self)
+
+    def exception(self) -> Exception | None:
+        return self._error
+
+    def result(self) -> Any:
+        return self._value
+
+    def cancel(self) -> None:
+        """Nothing is on its way."""
+
+
+@pytest.fixture
+def connected(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A Cluster whose client is a stand-in with the given endings."""
+    distributed = pytest.importorskip("distributed")
+
+    def make(endings: Any) -> tuple[Cluster, StandIn]:
+        client = StandIn(endings)
+        monkeypatch.setattr(distributed, "Client", lambda *_, **__: client)
+        return Cluster("tcp://somewhere:8786"), client
+
+    return make
+
+
+def outcomes(study: Any, workers: Cluster) -> list[Any]:
+    import threading
+
+    stops = (study.stop(index) for index in range(study.size))
+    return [one for batch in workers.outcomes(stops, study.size, threading.Event()) for one in batch]
+
+
+STUDY = Wishes(speeds="20:59:1", torques="5", liquids="rigid")
+
+
+def test_a_stop_that_kills_every_worker_fails_alone(connected: Any, solver: QuickSolver) -> None:
+    from distributed import KilledWorker
+
+    def ending(function: Any, batch: Any, needed: str) -> Future:
+        if any(stop.index == 17 for stop in batch):
+            return Future(error=KilledWorker("solve_batch", None, 3))
+        return Future(function(batch, needed))
+
+    workers, _ = connected(ending)
+    found = sorted(outcomes(build(STUDY), workers), key=lambda one: one.index)
+    assert [one.index for one in found] == list(range(40))
+    assert [one.index for one in found if one.status != "stopped"] == [17]
+    assert not found[17].final
+    assert "every worker that computed this stop died" in found[17].answer["reason"]
+
+
+def test_batches_grow_to_a_few_seconds_of_work_and_shrink_towards_the_end(
+    connected: Any, solver: QuickSolver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "BATCH_SECONDS", 0.05)
+    workers, client = connected(lambda function, batch, needed: Future(function(batch, needed)))
+    found = outcomes(build(Wishes(speeds="20:59:0.1", torques="5", liquids="rigid")), workers)
+    assert sorted(one.index for one in found) == list(range(391))
+    assert client.batches[0] == 4
+    assert 8 <= max(client.batches) <= 391 // 4 + 1
+    assert client.batches[-1] == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (ModuleNotFoundError("No module named 'slosh_cli'"), "the workers need slosh too: python -m pip install"),
+        (ClusterError("a worker has slosh 0"), "a worker has slosh 0"),
+        (MemoryError("too much"), "a worker failed: MemoryError: too much"),
+    ],
+)
+def test_what_is_wrong_with_the_workers_reaches_the_user(connected: Any, error: Exception, message: str) -> None:
+    workers, _ = connected(lambda *_: Future(error=error))
+    with pytest.raises(ClusterError, match=message):
+        outcomes(build(STUDY), workers)
+
+
+def test_futures_that_the_scheduler_lost_end_the_study(connected: Any) -> None:
+    workers, _ = connected(lambda *_: Future(status="cancelled"))
+    with pytest.raises(ClusterError, match="lost the Dask scheduler"):
+        outcomes(build(STUDY), workers)
+
+
+def test_both_ends_share_program_and_result_version() -> None:
+    assert this_version().startswith("slosh ")
+    assert "results 1" in this_version()

@@ -1,0 +1,141 @@
+"""The real command, killed, interrupted, out of disk: no finished stop is lost, none runs twice."""
+
+import json
+import random
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from study_tools import CHEAP, begun, journal_rows, run_slosh, start_slosh
+
+TABLE = "outputs/cheap/braking_distance.csv"
+JOURNAL = "outputs/cheap/journal.sqlite"
+
+
+def sweep(stops: int, *more: object) -> list[object]:
+    """Arguments of a sweep of `stops` cheap stops, half of them with liquid."""
+    return ["sweep", *CHEAP, "--torque", f"{2 + 0.1:g}:{2 + 0.1 * (stops // 2):g}:0.1", "--jobs", 2, *more]
+
+
+def folder(parent: Path, name: str) -> Path:
+    made = parent / name
+    made.mkdir()
+    (made / "outputs").mkdir()
+    return made
+
+
+def uninterrupted(parent: Path, stops: int) -> bytes:
+    """The table of the sweep when nothing happens."""
+    where = folder(parent, "uninterrupted")
+    code, _, err = run_slosh(where, *sweep(stops))
+    assert code in (0, 3), err
+    assert len(begun(where)) == stops
+    return (where / TABLE).read_bytes()
+
+
+def kill_at_random_moments(where: Path, stops: int, kills: int, seed: int) -> None:
+    """Start the sweep and kill it, again and again: every other time at any moment of its start, else amid the stops.
+
+    What the journal held before a start is still there, to the letter, and is not begun again.
+    """
+    chance, sessions_with_progress = random.Random(seed), 0
+    for number in range(kills):
+        before = journal_rows(where / JOURNAL)
+        (where / "begun.log").unlink(missing_ok=True)
+        process = start_slosh(where, *sweep(stops))
+        if number % 4 == 0:
+            time.sleep(chance.uniform(0.0, 1.5))
+        else:
+            while not begun(where) and process.poll() is None:
+                time.sleep(0.002)
+            time.sleep(chance.uniform(0.0, 1.5 * stops / kills * 0.01))
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        after = journal_rows(where / JOURNAL)
+        assert {key: after[key] for key in before} == before
+        assert not set(begun(where)) & set(before)
+        assert len(set(begun(where))) == len(begun(where))
+        sessions_with_progress += len(after) > len(before)
+    assert sessions_with_progress > kills // 4
+    (where / "begun.log").unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("stops", "kills"), [(60, 3), pytest.param(200, 20, marks=pytest.mark.slow)], ids=["a few", "twenty"]
+)
+def test_a_sweep_killed_at_random_moments_ends_with_the_table_of_an_uninterrupted_one(
+    tmp_path: Path, stops: int, kills: int
+) -> None:
+    expected = uninterrupted(tmp_path, stops)
+    where = folder(tmp_path, "killed")
+    kill_at_random_moments(where, stops, kills, seed=stops)
+    kept = journal_rows(where / JOURNAL)
+    code, out, err = run_slosh(where, *sweep(stops, "--json"))
+    assert code in (0, 3), err
+    answer = json.loads(out)
+    assert (answer["runs"], answer["reused"], answer["done"] + answer["failed"]) == (stops, len(kept), stops)
+    assert len(begun(where)) == stops - len(kept)
+    assert not set(begun(where)) & set(kept)
+    assert (where / TABLE).read_bytes() == expected
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, number: signal.Signals) -> None:
+    where = folder(tmp_path, "interrupted")
+    process = start_slosh(where, *sweep(2000))
+    while len(begun(where)) < 10 and process.poll() is None:
+        time.sleep(0.005)
+    process.send_signal(number)
+    sent = time.monotonic()
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert time.monotonic() - sent < 10.0
+    kept = journal_rows(where / JOURNAL)
+    assert 8 <= len(kept) < 1000
+    assert f"{len(kept)} of 2000 stops are finished" in err
+    assert "the same command goes on from there" in err
+    assert len((where / TABLE).read_text().splitlines()) == 1 + len(kept)
+    assert len(begun(where)) - len(kept) <= 2  # at most the stops that were in hand are lost
+
+
+def test_a_full_disk_is_a_clear_error_and_the_study_goes_on_when_there_is_room(tmp_path: Path) -> None:
+    where = folder(tmp_path, "full")
+    code, out, err = run_slosh(where, *sweep(60, "--json"), LARGEST_FILE=300_000)
+    assert code == 2
+    error = json.loads(out)["error"]
+    assert error["code"] == "file"
+    assert "journal.sqlite" in error["where"]
+    assert "every stop committed before is kept" in err
+    assert "Traceback" not in err
+    kept = journal_rows(where / JOURNAL)
+    assert 0 < len(kept) < 60
+    code, out, err = run_slosh(where, *sweep(60, "--json"))
+    assert json.loads(out)["reused"] == len(kept)
+    assert len(journal_rows(where / JOURNAL)) == 60
+
+
+def test_five_of_fifty_stops_fail_and_the_others_are_finished(tmp_path: Path) -> None:
+    arguments = ["sweep", *CHEAP, "--liquid", "rigid", "--torque", "1:50:1", "--set", "solver.time_limit=7 s"]
+    code, out, err = run_slosh(tmp_path, *arguments, "--json")
+    assert code == 3
+    answer = json.loads(out)
+    assert (answer["runs"], answer["done"], answer["failed"]) == (50, 45, 5)
+    assert "5 of 50 stops ended without an answer" in err
+    assert "5 x time-limit: still rolling at" in err
+    assert "at 1 kN m; 2 kN m; 3 kN m; 4 kN m and 1 more" in err
+    rows = (tmp_path / TABLE).read_text().splitlines()[1:]
+    assert [row.split(",")[5] for row in rows] == ["time-limit"] * 5 + ["stopped"] * 45
+
+
+def test_two_processes_on_one_study_the_second_is_told(tmp_path: Path) -> None:
+    first = start_slosh(tmp_path, *sweep(2000))
+    while not begun(tmp_path) and first.poll() is None:
+        time.sleep(0.005)
+    code, out, err = run_slosh(tmp_path, *sweep(60, "--json"), STOP_LOG=tmp_path / "second.log")
+    first.send_signal(signal.SIGINT)
+    first.communicate(timeout=60)
+    assert code == 2
+    assert f"process {first.pid} on " in json.loads(out)["error"]["message"]
+    assert "already working on the study" in err
+    assert not (tmp_path / "second.log").read_text()

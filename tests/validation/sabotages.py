@@ -1,0 +1,163 @@
+"""Deliberate errors in the program, as edits of its source text, and the case that has to turn red.
+
+Most are made in memory: a function is compiled anew from its edited source and put in the place of the true one.
+Errors in kernels that the time loop is made of need a copy of the whole package, compiled on its own.
+"""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Edit:
+    """In `function` of `module` (dotted, within slosh_cli), `old` becomes `new`."""
+
+    module: str
+    function: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True)
+class Sabotage:
+    """An error, the case that it must turn red, and a part of the quantity of a row that must be among the red ones."""
+
+    case: str
+    edits: tuple[Edit, ...]
+    red: str = ""
+    copy: bool = False
+
+
+def edit(case: str, module: str, function: str, old: str, new: str, red: str = "", copy: bool = False) -> Sabotage:
+    return Sabotage(case, (Edit(module, function, old, new),), red, copy)
+
+
+STEADY = ("track.mem", "steady_matrix")
+MODE = ("tank.longitudinal", "longitudinal_mode")
+
+SABOTAGES: dict[str, Sabotage] = {
+    "moving_load_tension": edit("moving-load", *STEADY, "rail.mass * speed**2", "2 * rail.mass * speed**2", "deflection"),
+    "moving_load_bending": edit(
+        "moving-load", *STEADY, "rail.bending_stiffness *", "1.001 * rail.bending_stiffness *", "deflection"
+    ),
+    "moving_load_kernel": edit(
+        "moving-load", "track.moving", "rail_residual", "- rail.mass * speed * speed", "+ rail.mass * speed * speed",
+        "kernel",
+    ),
+    "moving_load_damped_drift": edit(
+        "moving-load-damped", *STEADY, "- rail.damping * speed", "+ rail.damping * speed", "largest error"
+    ),
+    "moving_load_damped_twist": edit(
+        "moving-load-damped", *STEADY, "- rail.shear_damping * speed", "- 0.0 * speed", "largest error"
+    ),
+    "critical_speed_formula": edit(
+        "critical-speed", "track.mem", "critical_speed", "2 * np.sqrt", "np.sqrt", "critical speed, "
+    ),
+    "critical_speed_refusal": edit(
+        "critical-speed", "solver.setup", "_check_speed", ">= limit", ">= 1e3 * limit", "1.02 of a critical speed"
+    ),
+    "mem_vs_fem_convection": Sabotage(
+        "mem-vs-fem",
+        (
+            Edit("track.moving", "prepare_rail", "-2.0 * step * rail.mass * speed", "2.0 * step * rail.mass * speed"),
+            Edit("track.moving", "rail_residual", "-2.0 * rail.mass * speed", "2.0 * rail.mass * speed"),
+        ),
+        "rail under wheel",
+        copy=True,
+    ),
+    "mem_vs_fem_acceleration": Sabotage(
+        "mem-vs-fem",
+        (
+            Edit("track.moving", "prepare_rail", "+ rail.mass * acceleration", "- rail.mass * acceleration"),
+            Edit("track.moving", "rail_residual", "+ rail.mass * acceleration", "- rail.mass * acceleration"),
+        ),
+        "rail under wheel",
+        copy=True,
+    ),
+    "rectangular_tank_lambda_02": edit(
+        "rectangular-tank", *MODE, "height_moment - along * slope", "height_moment + along * slope", "lambda_02"
+    ),
+    "rectangular_tank_gravity": edit("rectangular-tank", *MODE, "STANDARD_GRAVITY * kappa", "9.80 * kappa", "omega"),
+    "v_trough_lambda_02": edit(
+        "v-trough", *MODE, "elements.area_of_slope @", "(elements.area_of_slope - elements.surface_of) @", "lambda_02"
+    ),
+    "v_trough_wavenumber": edit(
+        "v-trough", "tank.eigenproblem", "HalfSectionElements.modes", "wavenumber**2 *", "0.5 * wavenumber**2 *", "omega"
+    ),
+    "circular_cylinder_chords": edit(
+        "circular-cylinder", "tank.mesh", "SectionMesh.for_finite_elements", "replace(curved, doflocs=places)", "curved",
+        "transverse",
+    ),
+    "circular_cylinder_width": edit("circular-cylinder", *MODE, "along * 2.0 * kappa", "along * kappa", "lambda_1"),
+    "kolaei_lambda_1": edit("kolaei", *MODE, "along * 2.0 * kappa", "along * kappa", "consistent with a 2.0 s ramp"),
+    "kolaei_force_sign": edit("kolaei", "tank.modal", "liquid_force", "force -= ", "force += ", "consistent with"),
+    "hertz_poisson": edit("hertz", "track.hertz", "hertz_contact", "(1 - poisson_ratio**2)", "1.0", "approach"),
+    "hertz_exponent": edit("hertz", "track.contact", "normal_force", "closed * root", "closed", "kernel"),
+    "hertz_axes": edit(
+        "hertz", "track.hertz", "HertzContact.semi_axes", "product * self.axis_ratio", "product / self.axis_ratio", "m at"
+    ),
+    "polach_square": edit(
+        "polach", "track.contact", "creep_force", "adhesion / (1.0 + adhesion * adhesion)",
+        "adhesion / (1.0 + adhesion * eps)", "wet",
+    ),
+    "polach_wet_parameters": edit(
+        "polach", "track.contact", "contact_model", "slip_reduction=adhesion.kS", "slip_reduction=0.4", "wet"
+    ),
+    "polach_quarter": edit("polach", "track.contact", "contact_model", "0.25 * math.pi", "math.pi", "initial slope"),
+    "point_mass_half_wagon": edit("point-mass", "wagon.model", "_mass_matrix", "return 0.5 *", "return 1.0 *", "distance"),
+    "point_mass_spin": edit(
+        "point-mass", "wagon.model", "_mass_matrix", "(wagon.wheelset.spin_inertia,", "(0.5 * wagon.wheelset.spin_inertia,",
+        "distance",
+    ),
+    "point_mass_resistance": edit(
+        "point-mass", "wagon.model", "wagon_model", "resistance=0.5 *", "resistance=1.0 *", "distance"
+    ),
+    "momentum_reaction": edit(
+        "momentum", "tank.modal", "modal_liquid", 'share * column("lambda_1")', '1.02 * share * column("lambda_1")',
+        "momentum lost",
+    ),
+    "momentum_weight": edit("momentum", "wagon.model", "wagon_model", "-0.5 * GRAVITY * weight", "-GRAVITY * weight", "weight"),
+    "energy_brake_sign": edit(
+        "energy", "solver.ledger", "balance", "(spin - v[BOGIE_PITCH", "(spin + v[BOGIE_PITCH", "residual", copy=True
+    ),
+    "energy_hertz": edit("energy", "solver.ledger", "balance", "0.4 * model.contact", "0.5 * model.contact", "residual", copy=True),
+    "energy_spin": edit(
+        "energy", "wagon.model", "_mass_matrix", "(wagon.wheelset.spin_inertia,", "(2 * wagon.wheelset.spin_inertia,",
+        "initial kinetic energy",
+    ),
+    "second_code_half_liquid": edit(
+        "second-code", "solver.setup", "problem", "GRAVITY, HALF)", "GRAVITY, 0.5 * HALF)", "slosh amplitude"
+    ),
+    "figure2_brake_reaction": edit(
+        "figure2", "solver.stage", "_wagon_residual", "+= point.torque[i]", "-= point.torque[i]", "leading wheel", copy=True
+    ),
+    "figure2_pitch_weight": edit(
+        "figure2", "tank.modal", "modal_liquid", "pitch_weight=gravity * lambda_1", "pitch_weight=0.0 * lambda_1", "front bogie"
+    ),
+    "figure3_friction": edit(
+        "figure3", "track.contact", "contact_model", "friction_limit_ratio=adhesion.A", "friction_limit_ratio=1.0", "longer"
+    ),
+}  # fmt: skip
+
+
+def edited(one: Edit) -> tuple[Any, str, Any]:
+    """The owner (module or class), the name, and the function from its edited source."""
+    module = import_module(f"slosh_cli.{one.module}")
+    *classes, name = one.function.split(".")
+    owner: Any = module
+    for part in classes:
+        owner = getattr(owner, part)
+    function = inspect.getattr_static(owner, name)
+    source = textwrap.dedent(inspect.getsource(getattr(function, "py_func", function)))
+    assert one.old in source, f"{one.function} has no {one.old!r} any more"
+    lines = source.replace(one.old, one.new).splitlines()
+    text = "\n".join(line for line in lines if line.strip() not in ("@kernel", "@inner_kernel"))
+    namespace = dict(vars(module))
+    code = compile("from __future__ import annotations\n" + text, f"<sabotaged {one.function}>", "exec")
+    exec(code, namespace)
+    return owner, name, namespace[name]
