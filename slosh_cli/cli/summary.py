@@ -45,7 +45,8 @@ def fact_rows(result: Result) -> list[tuple[str, str]]:
         ("braking distance", _number(result.braking_distance_m, ".2f", "m")),
         ("braking time", _number(result.braking_time_s, ".2f", "s")),
         *([("surface rise at an end wall, largest", surface)] if liquid else []),
-        ("wheel unloading, largest", _number(100.0 * result.max_wheel_unloading, ".1f", "%")),
+        ("within the range of its model", _range(result)),
+        ("wheel unloading, largest", _number(100.0 * result.max_wheel_unloading, ".1f", "% (usual limit: 60 %)")),
         ("mean sum of wheel loads / weight - 1", _number(_excess(result), ".1e")),
         ("energy ledger, largest residual", _number(result.energy_residual, ".1e", "of the initial energy")),
         ("steps", f"{result.steps} accepted, {result.rejected_steps} rejected"),
@@ -54,6 +55,12 @@ def fact_rows(result: Result) -> list[tuple[str, str]]:
             f"{result.solve_seconds:.2f} s, {result.microseconds_per_step:.0f} microseconds per step",
         ),
     ]
+
+
+def _range(result: Result) -> str:
+    """Yes, or the checks that say no."""
+    outside = [check.name for check in result.checks if check.kind == "model" and not check.within]
+    return f"no: {', '.join(outside)}" if outside else "yes"
 
 
 def _wheels(result: Result) -> "Table":

@@ -1,5 +1,6 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
+import json
 import platform
 import sys
 from collections.abc import Iterator, Mapping
@@ -157,6 +158,7 @@ def _attributes(result: Result) -> dict[str, Any]:
     summary = result.summary() | {
         "reason": result.reason,
         "warnings": "\n".join(" ".join(warning.split()) for warning in result.warnings),
+        "checks": json.dumps([check.as_dict() for check in result.checks]),
         "onset_s": result.onset_s,
         "static_wheel_load_N": list(result.static_wheel_load_N),
         "mean_total_wheel_load_N": result.mean_total_wheel_load_N,

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.results.channels import TIME, channel
+from slosh_cli.results.validity import Check
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,6 +65,7 @@ class Result:
     status: Status
     reason: str = ""
     warnings: tuple[str, ...] = ()
+    checks: tuple[Check, ...] = ()
     time: Vector = field(repr=False)
     channels: Mapping[str, Vector] = field(repr=False)
     braking_distance_m: float | None
@@ -126,6 +128,11 @@ class Result:
         return max(1.0 - least / static for least, static in pairs)
 
     @property
+    def in_model_range(self) -> bool:
+        """False where a check says that the run left the range of its own model."""
+        return all(check.within for check in self.checks if check.kind == "model")
+
+    @property
     def microseconds_per_step(self) -> float:
         """Time spent in the solver per accepted step, in microseconds."""
         return 1e6 * self.solve_seconds / max(self.steps, 1)
@@ -157,6 +164,8 @@ class Result:
             "steps": self.steps,
             "rejected_steps": self.rejected_steps,
             "solve_seconds": self.solve_seconds,
+            "in_model_range": self.in_model_range,
+            "checks": [check.as_dict() for check in self.checks],
             "warnings": [*self.warnings, *([self.reason] if self.reason else [])],
         }
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
 from slosh_cli.results.result import PerWheel, Result, Status
+from slosh_cli.results.validity import Extent, checks, warnings_of
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import advance, record, state
 from slosh_cli.solver.ledger import BRAKE, CREEP, FOUNDATION, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
@@ -35,8 +36,6 @@ Array = NDArray[np.float64]
 
 WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
-LEDGER_LIMIT = 1e-3
-"""An energy residual above this part of the initial kinetic energy is worth a warning."""
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
@@ -66,17 +65,19 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     where slosh coefficients cannot be computed.
     """
     stop = problem(scenario)
-    static_loads = _per_wheel(stop.start.normal)
+    static_loads = _per_wheel(stop.static_loads)
     run = integrate(stop, progress, cancel)
     clock, onset = run.state.clock, run.state.counts[state.PHASE] > 0
     status, reason = _OUTCOMES[run.outcome]
     stopped = status is Status.STOPPED and onset
     tank, weight = scenario.tank, stop.weight
+    verdicts = checks(_extent(scenario, stop, run))
     return Result(
         scenario=scenario,
         status=status,
         reason=reason.format(time=clock[state.TIME], speed=run.state.start.v[POSITION]),
-        warnings=tuple(_warnings(scenario, stop, run)),
+        warnings=(*warnings_of(verdicts), *_fraction_warnings(stop, frozen_load(tank).mass)),
+        checks=verdicts,
         time=run.rows[:, record.TIME_COLUMN],
         channels=_channels(scenario, stop, run),
         braking_distance_m=float(run.state.start.q[POSITION] - clock[state.ONSET_POSITION]) if stopped else None,
@@ -112,30 +113,23 @@ def _mean_load(run: Run, weight: float) -> float:
     return float(impulse / seconds) if seconds > 0 else weight
 
 
-def _warnings(scenario: Scenario, stop: Problem, run: Run) -> list[str]:
-    """What a reader must know before using the numbers."""
-    found = []
-    room = section_of(scenario.tank).height * (1 - scenario.tank.fill)
-    depth = section_of(scenario.tank).height - room
-    rise = float(run.state.surface[0])
-    if stop.model.liquid.mu.size and rise > min(room, depth):
-        found.append(
-            f"The surface moves by {rise:.2f} m at the end walls, but there is {room:.2f} m of room above it and "
-            f"{depth:.2f} m of liquid below: this stop lies outside the linear theory of the modal liquid."
-        )
-    if run.state.lifted[0]:
-        found.append(
-            "Wheels lifted off the rail and landed again: the largest wheel load of an undamped contact does not "
-            "converge then; use the braking distance, not max_wheel_load_N."
-        )
-    if run.state.residual[2] > LEDGER_LIMIT:
-        found.append(
-            f"The energy ledger misses {run.state.residual[2]:.1e} of the initial kinetic energy: lower "
-            "solver.tolerance or refine track.domain.element_length."
-        )
-    if stop.model.liquid.mu.size:
-        found += _fraction_warnings(stop, frozen_load(scenario.tank).mass)
-    return found
+def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
+    """What the verdicts on a run look at."""
+    tank, section = scenario.tank, section_of(scenario.tank)
+    depth = section.height * tank.fill
+    least = np.minimum(run.state.least, stop.static_loads)
+    return Extent(
+        liquid_model=tank.liquid.model,
+        rise=float(run.state.surface[0]),
+        room=section.height - depth,
+        depth=depth,
+        length=tank.length,
+        mean_depth=section.area(depth) / section.surface_width(depth),
+        unloading=float(np.max(1 - least / stop.static_loads)),
+        lifts=int(run.state.lifted[0]),
+        overturned=run.outcome == advance.OVERTURNED,
+        residual=float(run.state.residual[2]),
+    )
 
 
 def _fraction_warnings(stop: Problem, liquid_mass: float) -> list[str]:

@@ -39,6 +39,7 @@ def summary_row(result: Result) -> dict[str, Any]:
         "steps": result.steps,
         "rejected_steps": result.rejected_steps,
         "solve_seconds": result.solve_seconds,
+        "in_model_range": result.in_model_range,
         "reason": result.reason,
         "warnings": "; ".join(result.warnings),
     }

@@ -163,6 +163,23 @@ def _coefficients(v: Values) -> Iterator[Finding]:
         yield _finding("tank.liquid.damping_ratio", rule, given, fix)
 
 
+def _baffles(v: Values) -> Iterator[Finding]:
+    baffles = v.values.get("tank.baffles", ())
+    if baffles and v.values.get("tank.liquid.model") == "modal":
+        fix = "write `model: shallow-water`, or leave the baffles out"
+        yield _finding("tank.baffles", "must not be set for the modal liquid, which knows none", f"{len(baffles)}", fix)
+    if not baffles or not v.has("tank.length", "tank.liquid.cells"):
+        return
+    length, cells = v["tank.length"], v["tank.liquid.cells"]
+    faces = [round(baffle.position / length * cells) for baffle in baffles]
+    for place, face in enumerate(faces):
+        if not 0 < face < cells or face in faces[:place]:
+            rule = f"must lie inside the {shown(length)} m long tank, a cell or more from its walls and each other"
+            given = _metres(baffles[place].position)
+            path = ("tank", "baffles", place, "position")
+            yield Finding(path, rule, given, f"write a place between `0 m` and `{shown(length)} m`")
+
+
 def tank_extent(v: Values) -> tuple[float, float] | None:
     """Largest inner (width, height) of the tank in m, None where they are not known."""
     if v.has("tank.radius"):
@@ -204,7 +221,7 @@ def _dimension_key(v: Values, name: str) -> str:
 
 
 Rule = Callable[[Values], Iterator[Finding]]
-TANK_RULES: Final[tuple[Rule, ...]] = (_coefficients,)
+TANK_RULES: Final[tuple[Rule, ...]] = (_coefficients, _baffles)
 SCENARIO_RULES: Final[tuple[Rule, ...]] = (
     *TANK_RULES,
     _wheels_apart,

@@ -87,6 +87,17 @@ Coefficients: TypeAlias = Annotated[
 ]
 
 
+class Baffle(Part):
+    """A transverse wall with an opening, for the shallow-water model."""
+
+    position: Annotated[float, Quantity("length", Range(0.0, 200.0), "5 m")] = Field(
+        description="Distance from the rear end wall, m; taken to the nearest face between cells."
+    )
+    opening: Annotated[float, Number(Range(0.01, 1.0), "0.3")] = Field(
+        description="Open part of the wall's area, 0.01 to 1 (no wall)."
+    )
+
+
 class TankBase(Part):
     """What tanks of every shape have. Values are of the whole tank."""
 
@@ -109,6 +120,9 @@ class TankBase(Part):
     modes: Annotated[int, Count(1, 20)] = Field(
         default=1,
         description="How many odd longitudinal modes to compute; not to be set with given coefficients.",
+    )
+    baffles: tuple[Baffle, ...] = Field(
+        default=(), description="Transverse walls with openings; the modal liquid knows none."
     )
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.solver.method import GAMMA
-from slosh_cli.tank.shallow import liquid_energy_in_tank, liquid_evolve, potential_at
+from slosh_cli.tank.section_table import potential_at
+from slosh_cli.tank.shallow import liquid_energy_in_tank, liquid_evolve
 from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
 

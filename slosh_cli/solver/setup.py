@@ -48,6 +48,8 @@ class Problem:
     model: Model
     start: Point
     cells: Cells
+    static_loads: Array
+    """Wheel loads at t = 0, N, (4,)."""
 
     @property
     def weight(self) -> float:
@@ -80,7 +82,7 @@ def problem(scenario: Scenario) -> Problem:
         tank_push=np.asarray(np.linalg.solve(wagon.mass, wagon.tank_row), dtype=np.float64),
         tank_turn=np.asarray(np.linalg.solve(wagon.mass, turn), dtype=np.float64),
     )
-    return Problem(model, start, Cells(*cells))
+    return Problem(model, start, Cells(*cells), start.normal.copy())
 
 
 def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:

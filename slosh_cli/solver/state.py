@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.solver.problem import LOSSES, Array, Cells, Point, empty_point
+from slosh_cli.tank.shallow import WORK_ROWS
 from slosh_cli.wagon.coordinates import COORDINATES, WHEELS
 
 # places in State.clock
@@ -107,7 +108,7 @@ def new_scratch(unknowns: int, modes: int, cells: int) -> Scratch:
         **{name: np.zeros(WHEELS) for name in _WHEEL_VECTORS},
         resistance_slope=np.zeros(1),
         free=np.zeros(WHEELS),
-        cell_work=np.zeros((10, cells + 1)),
+        cell_work=np.zeros((WORK_ROWS, cells + 1)),
         cell_sums=np.zeros(4),
     )
 

@@ -67,9 +67,7 @@ def liquid_reaction(liquid, amplitude, rate, step, pitch):
     for n in range(liquid.mu.size):
         inertia = liquid.mu[n] + step * liquid.damping[n] + step * step * liquid.stiffness[n]
         arm = liquid.lambda_02[n] - step * step * liquid.pitch_weight[n]
-        rest = (
-            liquid.damping[n] * rate[n] + liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch
-        )
+        rest = liquid.damping[n] * rate[n] + liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch
         uu -= liquid.lambda_1[n] * liquid.lambda_1[n] / inertia
         up -= liquid.lambda_1[n] * arm / inertia
         pp -= arm * arm / inertia
@@ -84,9 +82,7 @@ def liquid_follow(liquid, amplitude, rate, step, pitch, tank_acceleration, pitch
     for n in range(liquid.mu.size):
         inertia = liquid.mu[n] + step * liquid.damping[n] + step * step * liquid.stiffness[n]
         arm = liquid.lambda_02[n] - step * step * liquid.pitch_weight[n]
-        rest = (
-            liquid.damping[n] * rate[n] + liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch
-        )
+        rest = liquid.damping[n] * rate[n] + liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch
         drive = liquid.lambda_1[n] * tank_acceleration + arm * pitch_acceleration
         acceleration[n] = -(drive + rest) / inertia
 
@@ -108,9 +104,7 @@ def liquid_energy(liquid, amplitude, rate, tank_speed, pitch, pitch_rate):
     for n in range(liquid.mu.size):
         coupled = liquid.lambda_1[n] * tank_speed + liquid.lambda_02[n] * pitch_rate
         kinetic += rate[n] * (coupled + 0.5 * liquid.mu[n] * rate[n])
-        potential += amplitude[n] * (
-            0.5 * liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch
-        )
+        potential += amplitude[n] * (0.5 * liquid.stiffness[n] * amplitude[n] - liquid.pitch_weight[n] * pitch)
     return kinetic, potential
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from slosh_cli.compiled import kernel
 from slosh_cli.tank.section import Section
 
 Array = NDArray[np.float64]
@@ -66,3 +67,110 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         slot_width=slot_width,
         roof=section.height,
     )
+
+
+@kernel
+def depth_of(table, area):
+    """Depth (m) of a wetted area (m^2): the table's cubic, inverted by Newton's method; above it the slot."""
+    last = table.depth.size - 1
+    if area >= table.area[last]:
+        return table.depth[last] + (area - table.area[last]) / table.slot_width
+    if area <= 0.0:
+        return 0.0
+    low, high = 0, last
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table.area[middle] <= area:
+            low = middle
+        else:
+            high = middle
+    depth = table.depth[low] + (table.depth[high] - table.depth[low]) * (area - table.area[low]) / (
+        table.area[high] - table.area[low]
+    )
+    left, right = table.depth[low], table.depth[high]
+    for _ in range(20):
+        value, slope = _cubic(table.depth, table.area, table.width, low, depth)
+        change = (area - value) / slope if slope > 0.0 else 0.0
+        following = min(max(depth + change, left), right)
+        change = following - depth
+        depth = following
+        if abs(change) <= 1e-15 * right:
+            break
+    return depth
+
+
+@kernel
+def _cubic(places, values, slopes, k, place):
+    """Cubic through two neighbouring nodes with given slopes; its value and slope."""
+    span = places[k + 1] - places[k]
+    part = (place - places[k]) / span
+    rest = 1.0 - part
+    value = (
+        rest * rest * (1.0 + 2.0 * part) * values[k]
+        + part * part * (3.0 - 2.0 * part) * values[k + 1]
+        + span * part * rest * (rest * slopes[k] - part * slopes[k + 1])
+    )
+    slope = (
+        6.0 * part * rest * (values[k + 1] - values[k]) / span
+        + rest * (1.0 - 3.0 * part) * slopes[k]
+        + part * (3.0 * part - 2.0) * slopes[k + 1]
+    )
+    return value, slope
+
+
+@kernel
+def _place(table, depth):
+    low, high = 0, table.depth.size - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table.depth[middle] <= depth:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def section_at(table, depth):
+    """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
+    last = table.depth.size - 1
+    if depth >= table.depth[last]:
+        head = depth - table.depth[last]
+        area = table.area[last] + table.slot_width * head
+        return area, table.pressure[last] + head * (table.area[last] + 0.5 * table.slot_width * head), table.slot_width
+    if depth <= 0.0:
+        return 0.0, 0.0, 1.0
+    k = _place(table, depth)
+    area, width = _cubic(table.depth, table.area, table.width, k, depth)
+    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
+    return area, pressure, max(width, 1e-12)
+
+
+@kernel
+def potential_at(table, depth):
+    """INT z b dz (m^3) at a depth (m): potential energy per length over density and gravity."""
+    last = table.depth.size - 1
+    if depth >= table.depth[last]:
+        head = depth - table.depth[last]
+        return table.first[last] + table.slot_width * head * (table.depth[last] + 0.5 * head)
+    area, pressure, _ = section_at(table, depth)
+    return depth * area - pressure
+
+
+@kernel
+def pressure_height(table, depth):
+    """Height (m) above the bottom at which the pressure on an end wall acts."""
+    if depth <= 0.0:
+        return 0.0
+    last = table.depth.size - 1
+    if depth >= table.depth[last]:
+        head = depth - table.depth[last]
+        arm = table.pressure_arm[last] + head * table.first[last]
+        return arm / (table.pressure[last] + head * table.area[last])
+    k = _place(table, depth)
+    area, _ = _cubic(table.depth, table.area, table.width, k, depth)
+    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
+    span = table.depth[k + 1] - table.depth[k]
+    part = (depth - table.depth[k]) / span
+    arm = table.pressure_arm[k] + part * (table.pressure_arm[k + 1] - table.pressure_arm[k])
+    return min(arm / pressure, depth) if pressure > 0.0 and area > 0.0 else 0.0

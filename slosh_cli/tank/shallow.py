@@ -16,17 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section_table import SectionTable
+from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, pressure_height, section_at
 
 Array = NDArray[np.float64]
 
 COURANT = 0.45
 """A step carries no wave further than this part of a cell."""
-LIMITER = 1.5
-"""Between 1 (minmod) and 2: how steep a reconstructed slope may be beside its neighbours."""
+WORK_ROWS = 11
+"""Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
-FILM = 1e-5
+FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
 stays bounded: A. Kurganov and G. Petrova, Comm. Math. Sci. 5 (2007) 133-160, equation 2.17."""
 
@@ -35,7 +35,8 @@ class ShallowLiquid(NamedTuple):
     """Constants of the liquid in a tank cut into `cells` of `spacing` (m); no cells: the liquid is absent.
 
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
-    liquid above the bottom, `mass` kg, `still_depth` m.
+    liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
+    face, zero where there is none.
     """
 
     cells: int
@@ -45,123 +46,16 @@ class ShallowLiquid(NamedTuple):
     centre_height: float
     mass: float
     still_depth: float
+    loss: Array
     table: SectionTable
 
 
 @kernel
-def depth_of(table, area):
-    """Depth (m) of a wetted area (m^2): the table's cubic, inverted by Newton's method; above it the slot."""
-    last = table.depth.size - 1
-    if area >= table.area[last]:
-        return table.depth[last] + (area - table.area[last]) / table.slot_width
-    if area <= 0.0:
-        return 0.0
-    low, high = 0, last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table.area[middle] <= area:
-            low = middle
-        else:
-            high = middle
-    depth = table.depth[low] + (table.depth[high] - table.depth[low]) * (area - table.area[low]) / (
-        table.area[high] - table.area[low]
-    )
-    left, right = table.depth[low], table.depth[high]
-    for _ in range(20):
-        value, slope = _cubic(table.depth, table.area, table.width, low, depth)
-        change = (area - value) / slope if slope > 0.0 else 0.0
-        following = min(max(depth + change, left), right)
-        change = following - depth
-        depth = following
-        if abs(change) <= 1e-15 * right:
-            break
-    return depth
-
-
-@kernel
-def _cubic(places, values, slopes, k, place):
-    """Cubic through two neighbouring nodes with given slopes; its value and slope."""
-    span = places[k + 1] - places[k]
-    part = (place - places[k]) / span
-    rest = 1.0 - part
-    value = (
-        rest * rest * (1.0 + 2.0 * part) * values[k]
-        + part * part * (3.0 - 2.0 * part) * values[k + 1]
-        + span * part * rest * (rest * slopes[k] - part * slopes[k + 1])
-    )
-    slope = (
-        6.0 * part * rest * (values[k + 1] - values[k]) / span
-        + rest * (1.0 - 3.0 * part) * slopes[k]
-        + part * (3.0 * part - 2.0) * slopes[k + 1]
-    )
-    return value, slope
-
-
-@kernel
-def _place(table, depth):
-    low, high = 0, table.depth.size - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table.depth[middle] <= depth:
-            low = middle
-        else:
-            high = middle
-    return low
-
-
-@kernel
-def section_at(table, depth):
-    """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
-    last = table.depth.size - 1
-    if depth >= table.depth[last]:
-        head = depth - table.depth[last]
-        area = table.area[last] + table.slot_width * head
-        return area, table.pressure[last] + head * (table.area[last] + 0.5 * table.slot_width * head), table.slot_width
-    if depth <= 0.0:
-        return 0.0, 0.0, 1.0
-    k = _place(table, depth)
-    area, width = _cubic(table.depth, table.area, table.width, k, depth)
-    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
-    return area, pressure, max(width, 1e-12)
-
-
-@kernel
-def potential_at(table, depth):
-    """INT z b dz (m^3) at a depth (m): potential energy per length over density and gravity."""
-    last = table.depth.size - 1
-    if depth >= table.depth[last]:
-        head = depth - table.depth[last]
-        return table.first[last] + table.slot_width * head * (table.depth[last] + 0.5 * head)
-    area, pressure, _ = section_at(table, depth)
-    return depth * area - pressure
-
-
-@kernel
-def pressure_height(table, depth):
-    """Height (m) above the bottom at which the pressure on an end wall acts."""
-    if depth <= 0.0:
-        return 0.0
-    last = table.depth.size - 1
-    if depth >= table.depth[last]:
-        head = depth - table.depth[last]
-        arm = table.pressure_arm[last] + head * table.first[last]
-        return arm / (table.pressure[last] + head * table.area[last])
-    k = _place(table, depth)
-    area, _ = _cubic(table.depth, table.area, table.width, k, depth)
-    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
-    span = table.depth[k + 1] - table.depth[k]
-    part = (depth - table.depth[k]) / span
-    arm = table.pressure_arm[k] + part * (table.pressure_arm[k + 1] - table.pressure_arm[k])
-    return min(arm / pressure, depth) if pressure > 0.0 and area > 0.0 else 0.0
-
-
-@kernel
 def _limited(before, after):
-    """Generalised minmod slope between two differences."""
+    """Minmod slope between two differences: the most cautious of the limiters, steady at bores and at the roof."""
     if before * after <= 0.0:
         return 0.0
-    size = min(LIMITER * abs(before), LIMITER * abs(after), 0.5 * abs(before + after))
-    return size if before > 0.0 else -size
+    return before if abs(before) < abs(after) else after
 
 
 @kernel
@@ -191,7 +85,7 @@ def _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_
 
 @kernel
 def liquid_depths(liquid, area, depth):
-    """Depths (cells,) m of the wetted areas (cells,) m^2; returns the largest wave speed over the still liquid."""
+    """Depths (cells,) m of the wetted areas (cells,) m^2, into `depth`."""
     for i in range(liquid.cells):
         depth[i] = depth_of(liquid.table, area[i])
 
@@ -232,8 +126,29 @@ def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
 
 
 @kernel
-def _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source):
+def _baffle(gravity, loss, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r):
+    """Flow (m^3/s) through a baffle and the momentum fluxes (m^4/s^2) on its rear and front side.
+
+    Each side starts from the flux on a closed wall, which the flow m relieves by the wave speed times m; what is left
+    across the baffle is the loss `0.5 loss m |m| / A` of the narrower side.
+    """
+    _, wall_l = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
+    _, wall_r = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
+    narrow = min(area_l, area_r)
+    if narrow <= 0.0:
+        return 0.0, wall_l, wall_r
+    wave_l = math.sqrt(gravity * area_l / width_l)
+    wave_r = math.sqrt(gravity * area_r / width_r)
+    linear, square, drive = wave_l + wave_r, 0.5 * loss / narrow, wall_l - wall_r
+    flow = 2.0 * drive / (linear + math.sqrt(linear * linear + 4.0 * square * abs(drive)))
+    return flow, wall_l - wave_l * flow, wall_r + wave_r * flow
+
+
+@kernel
+def _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source, push):
     """Fluxes of mass and momentum through the faces (cells + 1,), and the momentum source (cells,) of the tilt.
+
+    `push` (2,) gets the force over density on all walls and baffles (m^4/s^2, forward) and its moment (m^5/s^2).
 
     `work` is (2, cells + 1) scratch. Cells run from the rear wall forward; the source balances the pressures of a still
     tilted liquid to rounding.
@@ -254,15 +169,31 @@ def _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, sourc
         area_r, pressure_r, width_r = section_at(table, above)
         flow_l = area_l * (speed - 0.5 * slope_speed[i])
         flow_r = area_r * (speed + 0.5 * slope_speed[i])
+        jump = 0.0
         if i == 0:  # the wall mirrors the state
             area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
-        mass[i], momentum[i] = _hll(gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l)
+        if liquid.loss[i] > 0.0:
+            mass[i], before, after = _baffle(
+                gravity, liquid.loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+            )
+            momentum[i] = before
+            jump = after - before
+            push[0] -= jump
+            push[1] += before * pressure_height(table, depth[i - 1]) - after * pressure_height(table, depth[i])
+        else:
+            mass[i], momentum[i] = _hll(
+                gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+            )
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
-        source[i] = gravity * (pressure_r - pressure_l - mean_area * surface_slope) / liquid.spacing
+        source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / liquid.spacing
         area_b, flow_b, pressure_b, width_b = area_r, flow_r, pressure_r, width_r
     _, momentum[cells] = _hll(gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b)
     mass[0] = mass[cells] = 0.0
+    push[0] += momentum[cells] - momentum[0]
+    push[1] += momentum[cells] * pressure_height(table, depth[cells - 1]) - momentum[0] * pressure_height(
+        table, depth[0]
+    )
 
 
 @kernel
@@ -289,36 +220,35 @@ def _calm_films(liquid, area, flow):
 
 
 @kernel
-def _euler(liquid, area, flow, depth, acceleration, step, work, area_end, flow_end):
-    """An explicit Euler step (s) of areas and flows; returns the force over density on rear and front wall."""
-    mass, momentum, source = work[2], work[3], work[4]
-    _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source)
+def _euler(liquid, area, flow, depth, acceleration, step, work, area_end, flow_end, sums):
+    """An explicit Euler step (s) of areas and flows; to `sums` (4,) go half of its push, moment and work.
+
+    The moment (about the bottom centre, nose-down) is that of the weight's distribution and of the walls' pressures.
+    """
+    mass, momentum, source, push = work[2], work[3], work[4], work[10]
+    push[0] = push[1] = 0.0
+    _fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source, push)
     _keep_wet(liquid, area, mass, step)
+    arm = carried = 0.0
     for i in range(liquid.cells):
+        arm += area[i] * (i + 0.5 - 0.5 * liquid.cells)
+        carried += flow[i]
         area_end[i] = max(area[i] - step * (mass[i + 1] - mass[i]) / liquid.spacing, 0.0)
         flow_end[i] = flow[i] + step * (source[i] - (momentum[i + 1] - momentum[i]) / liquid.spacing)
     _calm_films(liquid, area_end, flow_end)
-    return momentum[0], momentum[liquid.cells]
-
-
-@kernel
-def _moment(liquid, area, depth, rear, front):
-    """Moment (N m) about the bottom centre, nose-down: weight distribution and end-wall pressures."""
-    weight = 0.0
-    for i in range(liquid.cells):
-        weight += area[i] * (i + 0.5 - 0.5 * liquid.cells)
-    weight *= liquid.gravity * liquid.spacing * liquid.spacing
-    arm = front * pressure_height(liquid.table, depth[liquid.cells - 1])
-    return liquid.density * (weight + arm - rear * pressure_height(liquid.table, depth[0]))
+    half = 0.5 * step * liquid.density
+    sums[0] += half * push[0]
+    sums[1] += half * (push[1] + liquid.gravity * liquid.spacing * liquid.spacing * arm)
+    sums[2] -= half * liquid.spacing * acceleration * carried
 
 
 @kernel
 def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums):
     """Carry the liquid through `duration` (s) of constant effective `acceleration` (m/s^2) of the tank.
 
-    `area`, `flow`, `depth` (cells,) are updated in place; `work` is (10, cells + 1). To `sums` (4,) are added the
-    impulse of the end walls on the tank (N s, forward), that of the moment (N m s), the work (J) done on the liquid in
-    the tank's frame and the number of steps. Returns False when the liquid's speed is no longer finite.
+    `area`, `flow`, `depth` (cells,) are updated in place; `work` is (WORK_ROWS, cells + 1). To `sums` (4,) are added
+    the impulse of walls and baffles on the tank (N s, forward), that of the moment (N m s), the work (J) done on the
+    liquid in the tank's frame and the number of steps. Returns False when the liquid's speed is no longer finite.
     """
     cells = liquid.cells
     first_area, first_flow, first_depth = work[5], work[6], work[7]
@@ -329,25 +259,14 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
         if not limit > 1e-7:
             return False
         step = remaining / math.ceil(remaining / limit)
-        rear, front = _euler(liquid, area, flow, depth, acceleration, step, work, first_area, first_flow)
-        push = front - rear
-        moment = _moment(liquid, area, depth, rear, front)
+        _euler(liquid, area, flow, depth, acceleration, step, work, first_area, first_flow, sums)
         liquid_depths(liquid, first_area, first_depth)
-        rear, front = _euler(
-            liquid, first_area, first_flow, first_depth, acceleration, step, work, second_area, second_flow
-        )
-        push += front - rear
-        moment += _moment(liquid, first_area, first_depth, rear, front)
-        carried = 0.0
+        _euler(liquid, first_area, first_flow, first_depth, acceleration, step, work, second_area, second_flow, sums)
         for i in range(cells):
-            carried += flow[i] + first_flow[i]
             area[i] = 0.5 * (area[i] + second_area[i])
             flow[i] = 0.5 * (flow[i] + second_flow[i])
         _calm_films(liquid, area, flow)
         liquid_depths(liquid, area, depth)
-        sums[0] += 0.5 * step * liquid.density * push
-        sums[1] += 0.5 * step * moment
-        sums[2] -= 0.5 * step * liquid.density * liquid.spacing * acceleration * carried
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0
     return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -29,8 +30,24 @@ class FlowingLiquid(LoadedLiquid, Protocol):
         """Speed of pressure waves where the section runs full, m/s."""
 
 
+class TransverseWall(Protocol):
+    """A baffle as a scenario describes it."""
+
+    @property
+    def position(self) -> float:
+        """Distance from the rear end wall, m."""
+
+    @property
+    def opening(self) -> float:
+        """Open part of its area."""
+
+
 class FlowingTank(LoadedTank, Protocol):
     """A scenario's tank with such a liquid."""
+
+    @property
+    def baffles(self) -> Sequence[TransverseWall]:
+        """Transverse walls with openings."""
 
     @property
     def liquid(self) -> FlowingLiquid:
@@ -49,13 +66,30 @@ def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[Sha
         centre_height=load.centre_height,
         mass=share * load.mass,
         still_depth=depth,
+        loss=_baffle_losses(tank),
         table=section_table(section, gravity, tank.liquid.slot_speed),
     )
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
 
 
+def baffle_loss(opening: float) -> float:
+    """Loss coefficient, on the speed in the tank, of a thin wall with a sharp-edged `opening` (part of the area).
+
+    I. E. Idelchik, Handbook of Hydraulic Resistance, on thin orifices: `(1 + 0.707 sqrt(1 - f) - f)^2 / f^2`.
+    """
+    return float((1 + 0.707 * np.sqrt(1 - opening) - opening) ** 2 / opening**2)
+
+
+def _baffle_losses(tank: FlowingTank) -> Array:
+    """Loss coefficients at the faces between cells (cells + 1,)."""
+    losses = np.zeros(tank.liquid.cells + 1)
+    for baffle in tank.baffles:
+        losses[round(baffle.position / tank.length * tank.liquid.cells)] = baffle_loss(baffle.opening)
+    return losses
+
+
 def no_cells() -> tuple[ShallowLiquid, CellColumns]:
     """The absence of a shallow-water liquid, for loads that are frozen or described by modes."""
     table = section_table(RectangularSection(1.0, 1.0), 1.0, 1.0)
-    liquid = ShallowLiquid(0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, table)
+    liquid = ShallowLiquid(0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, np.zeros(1), table)
     return liquid, (np.zeros(0), np.zeros(0), np.zeros(0))

@@ -34,6 +34,8 @@ KEYS = [
     "steps",
     "rejected_steps",
     "solve_seconds",
+    "in_model_range",
+    "checks",
     "warnings",
     "files",
 ]

@@ -26,6 +26,8 @@ CONTRACT = [
     "steps",
     "rejected_steps",
     "solve_seconds",
+    "in_model_range",
+    "checks",
     "warnings",
 ]
 
