@@ -31,8 +31,9 @@ def compute(data: CaseData) -> Outcome:
             name = f"{speed:g} m/s, {layer}"
             under, exact_under = at(nodes, shape, 0.0), float(closed_form(beam(track), 0.0, speed))
             found.compare(f"deflection under 1 N, {name} / nm", 1e9 * under, 1e9 * exact_under, "deflection")
-            for coarse, fine in pairwise(errors):
-                found.compare(f"order of convergence, {name}", float(np.log2(coarse / fine)), 4.0, "order")
+            for (h, coarse), (half, fine) in pairwise(zip(LENGTHS, errors, strict=True)):
+                order = float(np.log2(coarse / fine))
+                found.compare(f"order of convergence, {h:g} to {half:g} m, {name}", order, 4.0, "order")
             found.limit(f"largest error of the shape over its peak, {name}", _worst(shape, exact), "shape")
             found.limit(
                 f"force missing in the kernel's balance per newton, {name}", _kernel_gap(track, speed), "kernel"
