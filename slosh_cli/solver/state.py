@@ -84,6 +84,7 @@ class Scratch(NamedTuple):
     creep_by_slip: Array
     creep_by_speed: Array
     resistance_slope: Array
+    factored_speed: Array
     free: Array
     cell_work: Array
     cell_sums: Array
@@ -107,6 +108,7 @@ def new_scratch(unknowns: int, modes: int, cells: int) -> Scratch:
         small_pivots=np.zeros(WHEELS, dtype=np.int64),
         **{name: np.zeros(WHEELS) for name in _WHEEL_VECTORS},
         resistance_slope=np.zeros(1),
+        factored_speed=np.zeros(1),
         free=np.zeros(WHEELS),
         cell_work=np.zeros((WORK_ROWS, cells + 1)),
         cell_sums=np.zeros(4),

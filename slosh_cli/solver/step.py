@@ -51,6 +51,13 @@ def _guess(source, point):
 
 
 @inner_kernel
+def _extrapolate(start, middle, end):
+    """Start the iteration of the last stage from the line through the first two."""
+    for i in range(end.size):
+        end[i] = start[i] + (middle[i] - start[i]) / GAMMA
+
+
+@inner_kernel
 def take_step(model, scratch, state, time, step):
     """Try a step of `step` (s) from `state.start` at `time` (s).
 
@@ -72,7 +79,9 @@ def take_step(model, scratch, state, time, step):
     if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0
     _predict_point(start, middle, OUTER * step, OUTER * step, implicit, base)
-    _guess(middle, end)
+    _extrapolate(start.a, middle.a, end.a)
+    _extrapolate(start.rail_second, middle.rail_second, end.rail_second)
+    _extrapolate(start.normal, middle.normal, end.normal)
     torque = brake_torque(model.brake, time + step, phase)
     if not solve_stage(model, scratch, work, base, end, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0
