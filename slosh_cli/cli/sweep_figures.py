@@ -97,4 +97,4 @@ def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> "Mark":
 
     value = row[column(along)]
     x = value if isinstance(value, float) else float(ticks.setdefault(value, len(ticks)))
-    return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("within_linear_theory")))
+    return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("liquid_in_range")))

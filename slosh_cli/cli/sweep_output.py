@@ -115,7 +115,7 @@ def _distance(row: Row | None, best: Sequence[Row]) -> str:
     distance = row.get("braking_distance_m")
     if distance is None:
         return str(row["status"])
-    outside = "" if row.get("within_linear_theory") else "o"
+    outside = "" if row.get("liquid_in_range") else "o"
     mark = "*" if any(row is one for one in best) else ""
     return f"{mark}{outside} {distance:.2f}".strip()
 
@@ -127,8 +127,8 @@ def _ratio(row: Row | None) -> str:
 
 def _legend(rows: Sequence[Row]) -> str:
     words = "* shortest of its curve"
-    outside = any(row.get("braking_distance_m") is not None and not row.get("within_linear_theory") for row in rows)
-    return words + ("   o outside linear theory: the surface reaches the roof or the bottom" if outside else "")
+    outside = any(row.get("braking_distance_m") is not None and not row.get("liquid_in_range") for row in rows)
+    return words + ("   o outside the range of the liquid's theory (see warnings in the table)" if outside else "")
 
 
 def _curve_of(study: Study) -> list[Axis]:

@@ -138,7 +138,7 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
     def found() -> Iterator[dict[str, Any]]:
         return rows(study, lambda index: answer(study, planned, journal, index))
 
-    written = write_study_table(columns(study), found(), table)
+    written = write_study_table(columns(study, found()), found(), table)
     if interrupted:
         again = "the command without --fresh" if task.fresh else "the same command"
         note(f"{written} of {study.size} stops are finished and kept in {task.folder}; {again} goes on from there.")

@@ -27,6 +27,7 @@ from slosh_cli.results.result import Status
 
 NAME: Final = "braking_distance"
 SOLID: Final = "rigid"
+LINEAR: Final = "modal"
 MOST_PANELS: Final = 6
 MOST_PAGES: Final = 12
 
@@ -48,7 +49,7 @@ class Mark:
     x: float
     distance: float | None
     status: Status
-    within_linear_theory: bool
+    liquid_in_range: bool
 
 
 @dataclass(frozen=True)
@@ -149,9 +150,7 @@ def _draw_curve(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None
     for within, style, width in ((True, look["linestyle"], 1.8), (False, OUTSIDE, 1.5)):
         axes.plot(*_way(marks, within=within), color=color, linestyle=style, linewidth=width, zorder=2)
         places = [
-            (mark.x, mark.distance)
-            for mark in marks
-            if mark.distance is not None and mark.within_linear_theory == within
+            (mark.x, mark.distance) for mark in marks if mark.distance is not None and mark.liquid_in_range == within
         ]
         axes.plot(
             [x for x, _ in places], [distance for _, distance in places], marker=look["marker"], color=color,
@@ -167,7 +166,7 @@ def _way(marks: Sequence[Mark], *, within: bool) -> tuple[list[float], list[floa
     for first, second in pairwise(marks):
         if first.distance is None or second.distance is None:
             continue
-        if (first.within_linear_theory and second.within_linear_theory) == within:
+        if (first.liquid_in_range and second.liquid_in_range) == within:
             if not x or x[-1] != first.x:
                 x += [math.nan, first.x]
                 y += [math.nan, first.distance]
@@ -227,9 +226,10 @@ def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
     """What the lines and markers mean, as far as they occur."""
     handles = [_key(_name(model), **look, linewidth=1.8) for model, look in looks.items()]
     marks = [mark for panel in page.panels for marks in panel.curves.values() for mark in marks]
-    if any(mark.distance is not None and not mark.within_linear_theory for mark in marks):
+    if any(mark.distance is not None and not mark.liquid_in_range for mark in marks):
         look = {"marker": "o", "markerfacecolor": "white", "markeredgewidth": 1.5, "markersize": 7.0}
-        handles.append(_key("outside linear theory", linestyle=OUTSIDE, **look))
+        words = "outside linear theory" if set(looks) <= {LINEAR, SOLID} else "outside its theory"
+        handles.append(_key(words, linestyle=OUTSIDE, **look))
     for status in sorted({mark.status for mark in marks if mark.distance is None}):
         look = {"marker": WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
         handles.append(_key(str(status), linestyle="none", **look))

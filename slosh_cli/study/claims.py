@@ -47,7 +47,7 @@ class Point:
 
     distance: float | None
     status: str
-    within_linear_theory: bool
+    liquid_in_range: bool
 
 
 Curve = dict[float, Point]
@@ -74,7 +74,7 @@ def verdicts(rows: Iterable[Mapping[str, Any]]) -> list[Verdict]:
     """The claims about Figure 3, from the rows of a study's table."""
     curves: dict[tuple[float, str], Curve] = {}
     for row in rows:
-        point = Point(row.get("braking_distance_m"), str(row["status"]), bool(row.get("within_linear_theory")))
+        point = Point(row.get("braking_distance_m"), str(row["status"]), bool(row.get("liquid_in_range")))
         curves.setdefault((row["v0_km_h"], row["liquid"]), {})[row["torque_kN_m"]] = point
     return [_optimum(curves), _longer(curves), _fifteen_percent(curves)]
 
@@ -102,7 +102,7 @@ def _optimum(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
                 found.append(None)
                 continue
             torque, point = best
-            where = "" if point.within_linear_theory else ", outside linear theory"
+            where = "" if point.liquid_in_range else ", outside linear theory"
             parts.append(f"{speed:g} km/h {liquid}: {torque:g} kN m ({point.distance:.1f} m{where}){gaps}")
             found.append(OPTIMUM[0] <= torque <= OPTIMUM[1])
     text = "the most effective torque lies between 15 and 20 kN m at 80 and at 160 km/h"
@@ -155,7 +155,7 @@ def _fifteen_percent(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
 def _told(point: Point) -> str:
     if point.distance is None:
         return point.status
-    return f"{point.distance:.1f} m{'' if point.within_linear_theory else ' (outside linear theory)'}"
+    return f"{point.distance:.1f} m{'' if point.liquid_in_range else ' (outside linear theory)'}"
 
 
 def _percent(ratio: float) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from slosh_cli.errors import SloshError
 from slosh_cli.results.tables import summary_row
-from slosh_cli.study.plan import SOLID, Stop, tidy
+from slosh_cli.study.plan import Stop, tidy
 
 if TYPE_CHECKING:
     from slosh_cli.results.result import Result
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 _NOT_THE_ANSWER = ("name", "solve_seconds")
 """Columns of a summary that the same stop does not repeat."""
+_NOT_THE_LIQUID = ("wheels lifted off", "pitch beyond small angles")
+"""Checks of the model's range that are not about the liquid."""
 
 
 @dataclass(frozen=True)
@@ -81,14 +83,10 @@ def conditions(scenario: Scenario) -> dict[str, Any]:
 
 def _answer(result: Result) -> dict[str, Any]:
     row = {name: value for name, value in summary_row(result).items() if name not in _NOT_THE_ANSWER}
-    return row | {"within_linear_theory": _within_linear_theory(result)}
+    return row | {"liquid_in_range": _liquid_in_range(result)}
 
 
-def _within_linear_theory(result: Result) -> bool:
-    """Whether the surface reached neither roof nor bottom at an end wall (model section 10)."""
-    tank = result.scenario.tank
-    if tank.liquid.model == SOLID:
-        return True
-    room = result.surface_limit_m
-    depth = room / (1.0 - tank.fill) * tank.fill
-    return result.max_surface_m <= min(room, depth)
+def _liquid_in_range(result: Result) -> bool:
+    """Whether the model of the liquid holds for this run: what else may end a model leaves the distance alone."""
+    about_liquid = (check for check in result.checks if check.kind == "model" and check.name not in _NOT_THE_LIQUID)
+    return all(check.within for check in about_liquid)

@@ -21,11 +21,12 @@ Row = dict[str, Any]
 _HEAD: Final = ("v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status")
 _PER_WHEEL: Final = ("min_wheel_load_{}_N", "max_wheel_load_{}_N", "static_wheel_load_{}_N", "locked_time_{}_s")
 _TAIL: Final = (
-    "ratio_to_solid", "within_linear_theory", "max_surface_m", "surface_limit_m",
+    "ratio_to_solid", "liquid_in_range", "max_surface_m", "surface_limit_m",
     *(column.format(i) for column in _PER_WHEEL for i in WHEELS),
     "max_wheel_unloading", "mean_total_wheel_load_N", "weight_N", "energy_residual", "steps", "rejected_steps",
-    "reason", "warnings",
+    "in_model_range",
 )  # fmt: skip
+_END: Final = ("reason", "warnings")
 _OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
 
 
@@ -35,10 +36,13 @@ def column_of(axis: Axis) -> str:
     return f"{axis.key}_{unit}" if unit else axis.key
 
 
-def columns(study: Study) -> list[str]:
-    """The columns of a study's table, in order."""
+def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
+    """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
     varied = [column_of(axis) for axis in own_axes(study)]
-    return [*_HEAD, *varied, *_TAIL, *(["history"] if study.histories else [])]
+    known = [*_HEAD, *varied, *_TAIL]
+    others = dict.fromkeys(name for row in rows for name in row)
+    end = [*_END, *(["history"] if study.histories else [])]
+    return [*known, *(name for name in others if name not in known and name not in end), *end]
 
 
 def own_axes(study: Study) -> list[Axis]:

@@ -15,7 +15,7 @@ def row(speed: float, torque: float, liquid: str, distance: float | None, *, wit
     status = "overturned" if distance is None else "stopped"
     return {
         "v0_km_h": speed, "torque_kN_m": torque, "liquid": liquid, "braking_distance_m": distance, "status": status,
-        "within_linear_theory": within,
+        "liquid_in_range": within,
     }  # fmt: skip
 
 
@@ -94,7 +94,7 @@ def test_a_stop_without_an_answer_leaves_the_claim_open_and_is_named() -> None:
 
 
 def test_what_lies_outside_linear_theory_says_so() -> None:
-    rows = [one | {"within_linear_theory": one["liquid"] == "rigid"} for one in figure()]
+    rows = [one | {"liquid_in_range": one["liquid"] == "rigid"} for one in figure()]
     found = by_claim(rows)
     assert "outside linear theory" in found["fig3-optimum"].evidence
     assert "outside linear theory" in found["fig3-15-percent"].evidence

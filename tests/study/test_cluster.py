@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import shutil
 import signal
 import subprocess
@@ -27,31 +26,32 @@ needs_dask = pytest.mark.skipif(shutil.which("dask", path=str(Path(sys.executabl
 
 
 class Processes:
-    """A scheduler and workers, each a process that can be killed."""
+    """A scheduler and two workers, each a process that can be killed."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._environment = os.environ | {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "3"}
-        self.scheduler = self._start("scheduler", "--scheduler-file", "scheduler.json", "--no-dashboard")
+        self.scheduler = self._start("scheduler", "--scheduler-file", "scheduler.json", "--port", "0")
         file = folder / "scheduler.json"
         deadline = time.monotonic() + 60.0
         while not file.exists() or not file.read_text().strip().endswith("}"):
             assert time.monotonic() < deadline, "no scheduler"
             time.sleep(0.02)
         self.address = str(json.loads(file.read_text())["address"])
-        self.workers = [self.add_worker() for _ in range(2)]
+        self.workers: list[subprocess.Popen[bytes]] = []
+        self.complete()
 
     def _start(self, what: str, *arguments: str) -> "subprocess.Popen[bytes]":
-        command = [sys.executable, "-m", "dask", what, "--host", "127.0.0.1", *arguments]
-        if what == "scheduler":
-            command += ["--port", "0"]
+        command = [sys.executable, "-m", "dask", what, "--host", "127.0.0.1", "--no-dashboard", *arguments]
         quiet = subprocess.DEVNULL
-        return subprocess.Popen(command, cwd=self._folder, env=self._environment, stdout=quiet, stderr=quiet)
+        return subprocess.Popen(command, cwd=self._folder, stdout=quiet, stderr=quiet)
 
-    def add_worker(self) -> "subprocess.Popen[bytes]":
-        return self._start(
-            "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", "scheduler.json"
-        )
+    def complete(self) -> None:
+        """Start workers until there are two."""
+        self.workers = [worker for worker in self.workers if worker.poll() is None]
+        while len(self.workers) < 2:
+            self.workers.append(
+                self._start("worker", "--nthreads", "1", "--no-nanny", "--scheduler-file", "scheduler.json")
+            )
 
     def stop(self) -> None:
         for process in (*self.workers, self.scheduler):
@@ -60,13 +60,18 @@ class Processes:
             process.wait()
 
 
-@pytest.fixture
-def processes(tmp_path: Path) -> Iterator[Processes]:
-    where = tmp_path / "cluster"
-    where.mkdir()
-    running = Processes(where)
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Processes]:
+    running = Processes(tmp_path_factory.mktemp("cluster"))
     yield running
     running.stop()
+
+
+@pytest.fixture
+def processes(shared: Processes) -> Processes:
+    """A scheduler and two live workers; a test may kill workers."""
+    shared.complete()
+    return shared
 
 
 def sweep(stops: int, *more: object) -> list[object]:
@@ -115,21 +120,22 @@ def test_a_worker_that_is_killed_midway_loses_nothing(tmp_path: Path, processes:
 
 
 @needs_dask
-def test_a_scheduler_that_is_lost_is_a_clear_error_and_the_study_goes_on(tmp_path: Path, processes: Processes) -> None:
-    command = start_slosh(tmp_path, *sweep(2000, "--cluster", processes.address))
+def test_a_scheduler_that_is_lost_is_a_clear_error_and_the_study_goes_on(tmp_path: Path, shared: Processes) -> None:
+    shared.complete()
+    command = start_slosh(tmp_path, *sweep(600, "--cluster", shared.address))
     while len(journal_rows(tmp_path / JOURNAL)) < 10 and command.poll() is None:
         time.sleep(0.01)
-    processes.scheduler.send_signal(signal.SIGKILL)
+    shared.scheduler.send_signal(signal.SIGKILL)  # no later test needs it
     out, err = command.communicate(timeout=120)
     assert command.returncode == 2, err
     error = json.loads(out)["error"]
     assert error["code"] == "cluster"
-    assert f"lost the Dask scheduler at {processes.address}" in error["message"]
+    assert f"lost the Dask scheduler at {shared.address}" in error["message"]
     assert "every stop received before is kept" in err
     assert "Traceback" not in err
     kept = len(journal_rows(tmp_path / JOURNAL))
     assert kept >= 10
-    _, out, _ = run_slosh(tmp_path, *sweep(60))
+    _, out, _ = run_slosh(tmp_path, *sweep(40))
     assert json.loads(out)["reused"] >= min(kept, 10)
 
 

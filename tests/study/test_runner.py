@@ -4,6 +4,7 @@ import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from study_tools import QuickSolver
@@ -11,6 +12,7 @@ from study_tools import QuickSolver
 from slosh_cli.errors import PhysicsError
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Result, Status
+from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.journal import JOURNAL, Journal
@@ -175,20 +177,27 @@ def test_a_journal_that_cannot_be_written_ends_the_study_at_once(
 def test_the_answer_of_a_stop_holds_nothing_that_another_run_would_not_repeat(solver: QuickSolver) -> None:
     outcome = solve(build(STUDY).stop(0))
     assert not {"name", "solve_seconds"} & set(outcome.answer)
-    assert outcome.answer["within_linear_theory"] is True
+    assert outcome.answer["liquid_in_range"] is True
     assert outcome.result is None
 
 
-@pytest.mark.parametrize(("fill", "rise", "within"), [(0.5, 1.4, True), (0.5, 1.6, False), (0.3, 1.0, False)])
-def test_a_surface_at_the_roof_or_the_bottom_is_outside_linear_theory(
-    solver: QuickSolver, fill: float, rise: float, within: bool
+@pytest.mark.parametrize(
+    ("name", "kind", "value", "within"),
+    [
+        ("surface rise over the room above and below", "model", 0.9, True),
+        ("surface rise over the room above and below", "model", 1.1, False),
+        ("excess of the first slosh frequency", "model", 1.1, False),
+        ("wheels lifted off", "model", 4.0, True),
+        ("energy ledger residual", "accuracy", 2.0, True),
+        ("wheel unloading", "operation", 2.0, True),
+    ],
+)
+def test_a_liquid_beyond_its_theory_is_marked_other_checks_leave_the_distance_alone(
+    solver: QuickSolver, name: str, kind: Any, value: float, within: bool
 ) -> None:
-    solver.answer = lambda scenario: replace(
-        solver.stop(scenario), max_surface_m=rise, surface_limit_m=3.0 * (1.0 - scenario.tank.fill)
-    )
-    study = build(Wishes(vary=[f"tank.fill={fill}"]))
-    assert solve(study.stop(0)).answer["within_linear_theory"] is within
-    assert solve(study.stop(1)).answer["within_linear_theory"] is True  # the solid has no surface
+    check = Check(name, kind, value, 1.0, "")
+    solver.answer = lambda scenario: replace(solver.stop(scenario), checks=(check,))
+    assert solve(build(STUDY).stop(0)).answer["liquid_in_range"] is within
 
 
 def test_histories_are_kept_when_asked_for(solver: QuickSolver, tmp_path: Path) -> None:

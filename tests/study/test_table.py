@@ -25,7 +25,7 @@ def test_the_first_columns_are_those_of_the_contract_and_units_are_in_the_names(
     names = columns(STUDY)
     assert names[:6] == ["v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status"]
     assert names[6:8] == ["wagon.pivot_spacing_m", "contact.adhesion"]
-    assert {"ratio_to_solid", "within_linear_theory", "min_wheel_load_4_N", "reason", "warnings"} <= set(names)
+    assert {"ratio_to_solid", "liquid_in_range", "min_wheel_load_4_N", "reason", "warnings"} <= set(names)
     assert len(set(names)) == len(names)
     assert "history" not in names
     assert columns(build(Wishes(histories=True)))[-1] == "history"

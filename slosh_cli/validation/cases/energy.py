@@ -39,6 +39,8 @@ def compute(data: CaseData) -> Outcome:
                 "losses",
             )
         curves.append(curve(name, result.time, np.maximum(np.abs(result.channels["energy_residual"]), 1e-14)))
+    soft = stop("paper-80-solid", *data.reference["accurate"], *data.reference["soft_contact"])
+    found.limit("a slow stop on soft contacts: residual", soft.energy_residual, "accurate")
     return found.outcome(Chart((Panel("time / s", "energy missing over initial kinetic energy", curves, log_y=True),)))
 
 

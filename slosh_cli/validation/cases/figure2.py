@@ -23,7 +23,7 @@ def compute(data: CaseData) -> Outcome:
     solid = stop("paper-80-solid")
     for words, changes in data.reference["coefficients"].items():
         liquid = stop("paper-80-liquid", *changes)
-        for claim, verdict in _verdicts(data, found, words, liquid, solid).items():
+        for claim, verdict in claim_verdicts(data, found, words, liquid, solid).items():
             found.verdict(f"{claims[claim]} [{words} coefficients]", verdict, data.reference["stated"][claim])
     return found.outcome(_chart(stop("paper-80-liquid"), solid))
 
@@ -36,7 +36,8 @@ def _braking_loads(data: CaseData, result: Result) -> Array:
     return np.array([result.channels[wheel(i, "normal_force")][during] for i in WHEELS])
 
 
-def _verdicts(data: CaseData, found: Findings, words: str, liquid: Result, solid: Result) -> dict[str, str]:
+def claim_verdicts(data: CaseData, found: Findings, words: str, liquid: Result, solid: Result) -> dict[str, str]:
+    """Verdict on each claim about Figure 2 from a stop with liquid and one with the equivalent solid."""
     moving, frozen = _braking_loads(data, liquid), _braking_loads(data, solid)
     swing = float((moving.std(axis=1) / frozen.std(axis=1)).min())
     found.note(f"least ratio of standard deviations of wheel loads, liquid over solid, {words}", swing)

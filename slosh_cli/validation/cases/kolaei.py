@@ -66,6 +66,11 @@ def compute(data: CaseData) -> Outcome:
             )
         )
         _bound(found, fill, choices, mass)
+    wagon = load_tank_scenario(find_packaged("paper-80-liquid")).tank
+    choices = {"printed": slosh_modes(wagon), PAIR: computed_modes(wagon, 1)}
+    _bound(found, "1.0 of the wagon's tank", choices, frozen_load(wagon).mass)
+    for words, modes in choices.items():
+        found.note(f"height lambda_02/lambda_1 of the wagon's tank, {words} / m", modes[0].height)
     return found.outcome(Chart(panels))
 
 
@@ -80,7 +85,7 @@ def _times() -> Array:
 def normalised_force(modes: Sequence[SloshMode], mass: float, deceleration: float, ramp: float) -> Array:
     """Force of the liquid on the whole tank over m a, every STEP s, from the kernels that run in a stop.
 
-    The tank moves as prescribed and does not pitch. The trapezoidal rule is enough: steps are 1/300 of the first period.
+    The tank moves as prescribed and does not pitch. Trapezoidal rule; steps are 1/300 of the first period.
     """
     liquid = modal.modal_liquid(modes, GRAVITY, 1.0)
     count = len(modes)

@@ -294,8 +294,8 @@ def exudyn_stop(scenario: Scenario, mode: SloshMode, duration: float, step: floa
     settings.timeIntegration.numberOfSteps = round(duration / step)
     settings.timeIntegration.endTime = duration
     settings.timeIntegration.newton.relativeTolerance = 1e-9
-    settings.solutionSettings.writeSolutionToFile = False
-    settings.solutionSettings.sensorsWritePeriod = step
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = step
     settings.timeIntegration.verboseMode = 0
     system.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
     return _read(system, sensors, _Contact(scenario), mode)

@@ -1,0 +1,267 @@
+"""The tank alone, decelerated as prescribed without pitching: force, moment and surface of its liquid over time.
+
+The liquids are those of the wagon. Modes are integrated by the wagon's TR-BDF2, in steps halved until the histories
+settle; a shallow-water liquid is carried through stretches of constant mean deceleration; a rigid one follows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.solver import excite_kernels
+from slosh_cli.tank.coefficients import SloshLiquid, SloshTank, slosh_modes
+from slosh_cli.tank.load import frozen_load
+from slosh_cli.tank.modal import ModalLiquid, modal_liquid
+from slosh_cli.tank.shallow import WORK_ROWS
+from slosh_cli.tank.still import FlowingLiquid, TransverseWall, shallow_liquid
+
+Array = NDArray[np.float64]
+
+WHOLE = 1.0
+"""Share of the tank that is modelled: all of it, where a wagon has half of it on each rail."""
+ACCURACY = 1e-7
+"""Change of the histories, relative to their largest values, from one halving of the steps to the next that ends it."""
+FIRST_PHASE = 0.04
+"""The fastest mode's phase, rad, in the first and longest steps."""
+MOST_STEPS = 20_000_000
+"""Halving ends before more steps than this; the accuracy reached is part of the result."""
+
+
+@dataclass(frozen=True, eq=False)
+class Deceleration:
+    """A deceleration that is linear between `times` (k,) s, where it has `values` (k,) m/s^2.
+
+    It is zero before the first time and keeps the last value after the last one. Times must not fall; a time given
+    twice is a jump. Raises ValueError where these rules are broken.
+    """
+
+    times: Array
+    values: Array
+
+    def __post_init__(self) -> None:
+        if self.times.ndim != 1 or self.times.shape != self.values.shape or not self.times.size:
+            raise ValueError("times and values must be of one length, at least 1")
+        if not (np.isfinite(self.times).all() and np.isfinite(self.values).all()):
+            raise ValueError("times and values must be finite")
+        if np.any(np.diff(self.times) < 0.0):
+            raise ValueError("times must not fall")
+
+    @classmethod
+    def ramped(cls, level: float, ramp: float = 0.0) -> Deceleration:
+        """Linear from 0 to `level` (m/s^2) within `ramp` (s) from t = 0, then held; without a ramp a step."""
+        points = [(0.0, 0.0), (ramp, level)] if ramp > 0.0 else [(0.0, level)]
+        return cls.table(points)
+
+    @classmethod
+    def table(cls, points: Sequence[tuple[float, float]]) -> Deceleration:
+        """Through points (s, m/s^2)."""
+        times, values = np.array(points, dtype=np.float64).reshape(-1, 2).T
+        return cls(times, values)
+
+    def after(self, instants: Array) -> Array:
+        """Values in m/s^2 at `instants` (s), just after a jump where there is one."""
+        return self._at(instants, "right")
+
+    def before(self, instants: Array) -> Array:
+        """The same just before a jump."""
+        return self._at(instants, "left")
+
+    def speed_lost(self, instants: Array) -> Array:
+        """Integral in m/s up to `instants` (s)."""
+        times, values = self.times, self.values
+        sums = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(times) * (values[1:] + values[:-1]))])
+        k = np.searchsorted(times, instants, "right") - 1
+        reached = np.clip(k, 0, None)
+        more = 0.5 * (instants - times[reached]) * (values[reached] + self.after(instants))
+        return np.where(k < 0, 0.0, sums[reached] + more)
+
+    def largest(self, duration: float) -> float:
+        """Largest absolute value in m/s^2 from t = 0 to `duration` (s)."""
+        ends = np.array([0.0, duration])
+        inside = np.abs(self.values[(self.times >= 0.0) & (self.times <= duration)])
+        return float(np.max([*inside, *np.abs(self.after(ends)), *np.abs(self.before(ends[1:]))]))
+
+    def _at(self, instants: Array, side: str) -> Array:
+        times, values = self.times, self.values
+        k = np.searchsorted(times, instants, "left" if side == "left" else "right") - 1
+        reached, following = np.clip(k, 0, None), np.clip(k + 1, None, times.size - 1)
+        span = times[following] - times[reached]
+        part = np.where(span > 0.0, (instants - times[reached]) / np.where(span > 0.0, span, 1.0), 0.0)
+        return np.where(k < 0, 0.0, values[reached] + part * (values[following] - values[reached]))
+
+
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """What the liquid of a whole tank does to it, at `time` (n,) s under `deceleration` (n,) m/s^2.
+
+    `force` N on the tank, forward, and `moment` N m about the bottom centre, nose-down, contain the part of the liquid
+    that is at rest in the tank; `surface_front`, `surface_rear` m are rises over the still level at the end walls, all
+    (n,). Of a shallow-water liquid force and moment are means over the output interval around each time. `mass` kg of
+    liquid, `largest_deceleration` m/s^2, `mass_error` the largest change of the liquid's mass, as a share of it;
+    `accuracy` is what the modes' histories still changed by with the last halving of the steps, relative, and zero for
+    the other liquids. `reason` says why the history ends early, empty when it does not.
+    """
+
+    time: Array
+    deceleration: Array
+    force: Array
+    moment: Array
+    surface_front: Array
+    surface_rear: Array
+    mass: float
+    largest_deceleration: float
+    mass_error: float = 0.0
+    accuracy: float = 0.0
+    reason: str = ""
+
+    @property
+    def normalised_force(self) -> Array:
+        """Force over mass times the largest deceleration, (n,)."""
+        return self.force / (self.mass * self.largest_deceleration)
+
+    @property
+    def max_surface(self) -> float:
+        """Largest rise of the surface at an end wall, m."""
+        return float(max(self.surface_front.max(), self.surface_rear.max()))
+
+
+class ExcitedLiquid(SloshLiquid, FlowingLiquid, Protocol):
+    """A scenario's liquid with all that its model needs."""
+
+
+class ExcitedTank(SloshTank, Protocol):
+    """A scenario's tank with such a liquid."""
+
+    @property
+    def liquid(self) -> ExcitedLiquid: ...
+    @property
+    def baffles(self) -> Sequence[TransverseWall]: ...
+
+
+def excite(tank: ExcitedTank, deceleration: Deceleration, duration: float = 40.0, interval: float = 0.01) -> Excitation:
+    """Move the tank, at rest and its liquid level at t = 0, through `duration` s; a row every `interval` s.
+
+    Raises TankError where slosh modes cannot be computed, ValueError for a duration or an interval that is not
+    positive or a deceleration that is zero throughout.
+    """
+    if not (duration > 0.0 and 0.0 < interval < math.inf and duration < math.inf):
+        raise ValueError(f"duration and interval must be positive, but {duration} and {interval} s were given")
+    largest = deceleration.largest(duration)
+    if largest == 0.0:
+        raise ValueError("the deceleration must not be zero throughout")
+    time = _instants(deceleration, duration, interval)
+    given = deceleration.after(time)
+    given[-1] = deceleration.before(time[-1:])[0]
+    if tank.liquid.model == "shallow-water":
+        return _excite_cells(tank, deceleration, time, given, largest)
+    return _excite_modes(tank, deceleration, time, given, largest)
+
+
+def _instants(deceleration: Deceleration, duration: float, interval: float) -> Array:
+    """Every `interval` from 0 to `duration`, both in, moved onto the deceleration's corners next to them."""
+    count = max(math.ceil(duration / interval - 1e-9), 1)
+    time = np.arange(count + 1, dtype=np.float64) * interval
+    time[-1] = duration
+    for corner in deceleration.times[(deceleration.times > 0.0) & (deceleration.times < duration)]:
+        nearest = int(np.clip(np.searchsorted(time, corner), 1, count))
+        nearest -= corner - time[nearest - 1] < time[nearest] - corner
+        if abs(time[nearest] - corner) < 1e-9 * interval and 0 < nearest < count:
+            time[nearest] = corner
+    return time
+
+
+def _with_corners(deceleration: Deceleration, instants: Array) -> Array:
+    """`instants` and the deceleration's corners between them, each once, in order."""
+    corners = deceleration.times
+    inside = corners[(corners > instants[0]) & (corners < instants[-1])]
+    return np.asarray(np.unique(np.concatenate([instants, inside])), dtype=np.float64)
+
+
+def _excite_modes(
+    tank: ExcitedTank, deceleration: Deceleration, time: Array, given: Array, largest: float
+) -> Excitation:
+    load = frozen_load(tank)
+    liquid = modal_liquid(slosh_modes(tank), STANDARD_GRAVITY, WHOLE)
+    rows, accuracy = _settled_history(liquid, deceleration, time)
+    return Excitation(
+        time=time,
+        deceleration=given,
+        force=load.mass * given + rows[:, 0],
+        moment=load.mass * load.centre_height * given + rows[:, 1],
+        surface_front=rows[:, 2],
+        surface_rear=-rows[:, 2],
+        mass=load.mass,
+        largest_deceleration=largest,
+        accuracy=accuracy,
+    )
+
+
+def _settled_history(liquid: ModalLiquid, deceleration: Deceleration, time: Array) -> tuple[Array, float]:
+    """Slosh force, moment and front rise (n, 3) at `time`, and their relative change with the last halving.
+
+    Histories of steps h and h/2 are combined so that their errors of order h^2 cancel (L. F. Richardson).
+    """
+    if not liquid.mu.size:
+        return np.zeros((time.size, 3)), 0.0
+    ends = _with_corners(deceleration, time)
+    wanted = np.searchsorted(ends, time)
+    lengths, first, last = np.diff(ends), deceleration.after(ends[:-1]), deceleration.before(ends[1:])
+    fastest = math.sqrt(float(np.max(liquid.stiffness / liquid.mu)))
+    steps = np.maximum(np.ceil(lengths * fastest / FIRST_PHASE), 1.0).astype(np.int64)
+
+    def history(halvings: int) -> Array:
+        rows = np.zeros((ends.size, 3))
+        excite_kernels.modal_history(
+            liquid, lengths, first, last, steps * 2**halvings, np.zeros((6, liquid.mu.size)), rows
+        )
+        return rows[wanted]
+
+    coarse, fine, halvings = history(0), history(1), 1
+    combined, change = (4.0 * fine - coarse) / 3.0, math.inf
+    while change > ACCURACY and 2 ** (halvings + 1) * int(steps.sum()) <= MOST_STEPS:
+        halvings += 1
+        coarse, fine = fine, history(halvings)
+        previous, combined = combined, (4.0 * fine - coarse) / 3.0
+        size = np.maximum(np.abs(combined).max(axis=0), np.finfo(float).tiny)
+        change = float((np.abs(combined - previous).max(axis=0) / size).max())
+    return combined, change
+
+
+def _excite_cells(
+    tank: ExcitedTank, deceleration: Deceleration, time: Array, given: Array, largest: float
+) -> Excitation:
+    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, WHOLE)
+    borders = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
+    ends = _with_corners(deceleration, np.union1d(time, borders))
+    lengths = np.diff(ends)
+    means = np.diff(deceleration.speed_lost(ends)) / lengths
+    rows = np.zeros((lengths.size, 5))
+    work = np.zeros((WORK_ROWS, liquid.cells + 1))
+    done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, means, work, np.zeros(4), rows)
+    last = int(np.searchsorted(borders, ends[done], "right")) - 1  # as many rows as have their whole interval
+    sums = np.concatenate([np.zeros((1, 2)), np.cumsum(rows[:, :2], axis=0)])
+    spans = np.diff(borders[: last + 1])
+    force, moment = (np.diff(sums[np.searchsorted(ends, borders[: last + 1])], axis=0) / spans[:, None]).T
+    still, volume = liquid.still_depth, frozen_load(tank).mass / tank.liquid.density
+    depths = np.concatenate([[[still, still]], rows[:, 2:4]])[np.searchsorted(ends, time[:last])]
+    front, rear = (np.minimum(depths, liquid.table.roof) - still).T
+    reason = f"the liquid's speed is no longer finite after {ends[done]:.6g} s" if done < lengths.size else ""
+    return Excitation(
+        time=time[:last],
+        deceleration=given[:last],
+        force=force,
+        moment=moment,
+        surface_front=front,
+        surface_rear=rear,
+        mass=liquid.mass,
+        largest_deceleration=largest,
+        mass_error=float(np.abs(rows[:done, 4] / volume - 1.0).max(initial=0.0)),
+        reason=reason,
+    )

@@ -1,0 +1,239 @@
+"""The shallow-water liquid in the braked wagon: distance, wheel loads, momentum, energy, convergence, verdicts."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from slosh_cli.results.hdf5 import write_history
+from slosh_cli.results.tables import summary_row
+from slosh_cli.results.validity import UNLOADING_LIMIT
+from slosh_cli.solver.run import integrate
+from slosh_cli.solver.setup import problem
+from slosh_cli.study.build import Wishes, build
+from slosh_cli.study.table import columns
+
+ROOT = Path(__file__).parents[2]
+COMPUTED = "tank.coefficients=computed"
+
+
+def case(speed, torque, liquid, *more):
+    values = (f"braking.initial_speed={speed} km/h", f"braking.torque={torque} kN m", f"tank.liquid.model={liquid}")
+    return ("paper_80", *values, COMPUTED, *more)
+
+
+GENTLE = [(speed, torque) for speed in (80, 160) for torque in (2.5, 5)]
+HARD = [(speed, torque) for speed in (80, 160) for torque in (10, 12.5, 15, 17.5, 20)]
+
+
+@pytest.mark.parametrize(("speed", "torque"), GENTLE)
+def test_gentle_stops_end_where_the_rigid_load_s_do(stop, speed, torque):
+    """Acceptance: within 1 %, because the liquid's momentum comes to nothing in the mean."""
+    flowing, solid = (stop(*case(speed, torque, liquid)) for liquid in ("shallow-water", "rigid"))
+    assert flowing.status == solid.status == "stopped"
+    assert flowing.braking_distance_m == pytest.approx(solid.braking_distance_m, rel=5e-3)  # 1e-2 asked for
+
+
+@pytest.mark.parametrize(("speed", "torque"), HARD)
+def test_hard_stops_stay_upright_and_unload_wheels_less_than_linear_theory(stop, speed, torque):
+    """Acceptance: 10 to 20 kN m. The roof bounds the shift of weight."""
+    flowing, linear = (stop(*case(speed, torque, liquid)) for liquid in ("shallow-water", "modal"))
+    assert flowing.status == "stopped"
+    assert min(flowing.min_wheel_load_N) > 0.0
+    assert min(flowing.min_wheel_load_N) > min(linear.min_wheel_load_N)
+    assert flowing.max_surface_m <= flowing.surface_limit_m + 1e-12
+
+
+LEDGER = [*GENTLE, *HARD]
+
+
+@pytest.mark.parametrize(("speed", "torque"), LEDGER)
+def test_ledger_closes_and_the_rails_carry_the_weight(stop, speed, torque):
+    """Acceptance: residual at most 1e-4 of the initial kinetic energy; bores only take."""
+    result = stop(*case(speed, torque, "shallow-water"))
+    assert result.energy_residual <= 1e-4
+    assert result.mean_total_wheel_load_N == pytest.approx(result.weight_N, rel=1e-5)
+    taken = np.diff(result.channels["energy_slosh_damping"])
+    assert taken.min() > -1e-7 * result.energy["initial_kinetic"]
+    assert result.energy["slosh_damping"] > 0.0
+
+
+def whole_momentum(stop_, state):
+    """Momentum along the track of half the wagon and of its liquid, N s."""
+    model, v = stop_.model, state.start.v
+    liquid = model.shallow
+    tank = float(model.wagon.tank_row @ v) + liquid.centre_height * v[2]
+    own = liquid.density * liquid.spacing * float(state.cells_start.flow.sum())
+    return float(model.wagon.mass[0] @ v) + liquid.mass * tank + own
+
+
+@pytest.mark.parametrize("baffles", ["[]", "[{position: 5 m, opening: 0.2}, {position: 10 m, opening: 0.2}]"])
+@pytest.mark.parametrize("until", ["4 s", "9 s", "600 s"])
+def test_nothing_but_wheels_and_resistance_takes_momentum(shipped, until, baffles):
+    """Acceptance: amid the slosh and at the end. A lost share `m g theta` of the bottom would be seen here."""
+    scenario = shipped(
+        *case(80, 10, "shallow-water", "output.interval=1 ms", f"solver.time_limit={until}", f"tank.baffles={baffles}")
+    )
+    before = problem(scenario)
+    start = whole_momentum_at_rest(before)
+    stop_ = problem(scenario)
+    run = integrate(stop_)
+    from slosh_cli.results.simulate import simulate
+
+    result = simulate(scenario)
+    force = sum(result.channels[f"wheel_{i}_tangential_force"] for i in (1, 2, 3, 4))
+    constant, linear, quadratic = stop_.model.wagon.resistance
+    speed = result.channels["speed"]
+    force = force + constant + linear * speed + quadratic * speed**2
+    impulse = float(CubicSpline(result.time, force).integrate(0.0, result.time[-1]))
+    lost = start - whole_momentum(stop_, run.state)
+    assert lost == pytest.approx(impulse, rel=5e-5)
+
+
+def whole_momentum_at_rest(stop_):
+    model, v = stop_.model, stop_.start.v
+    return float(model.wagon.mass[0] @ v) + model.shallow.mass * float(model.wagon.tank_row @ v)
+
+
+def test_ledger_and_distance_tighten_with_the_tolerance(stop):
+    residuals, distances = [], []
+    for tolerance in ("1e-3", "1e-4", "1e-5", "1e-6"):
+        result = stop(*case(80, 5, "shallow-water", f"solver.tolerance={tolerance}"))
+        residuals.append(result.energy_residual)
+        distances.append(result.braking_distance_m)
+    assert residuals[0] > residuals[1] > residuals[2] > residuals[3]
+    assert residuals[0] / residuals[3] > 30
+    misses = np.abs(np.array(distances[:3]) / distances[3] - 1)
+    assert misses[1] < 2e-4
+    assert misses[2] < 5e-5
+
+
+def distance_at_fixed_steps(scenario, step):
+    stop_ = problem(scenario)
+    control = stop_.model.control._replace(longest_step=step, local_tolerance=1e3)
+    run = integrate(replace(stop_, model=stop_.model._replace(control=control)))
+    assert run.state.clock[0] / run.state.counts[0] == pytest.approx(step, rel=0.1)
+    return float(run.state.start.q[0]), float(run.state.residual[2])
+
+
+def test_the_coupling_is_of_second_order_in_the_macro_step(shipped):
+    """Distance and ledger of stops with steps of one length: the error falls with the square of the step."""
+    scenario = shipped(*case(80, 5, "shallow-water", "tank.liquid.cells=60"))
+    steps = np.array([0.04, 0.02, 0.01])
+    exact, _ = distance_at_fixed_steps(scenario, 0.00125)
+    found = [distance_at_fixed_steps(scenario, step) for step in steps]
+    misses = np.array([abs(distance / exact - 1) for distance, _ in found])
+    residuals = np.array([residual for _, residual in found])
+    orders = [np.polyfit(np.log(steps), np.log(values), 1)[0] for values in (misses, residuals)]
+    assert misses[2] < 1e-4
+    assert orders[0] > 1.5, (misses, residuals)
+    assert orders[1] > 1.0, (misses, residuals)
+
+
+def test_default_stop_needs_few_steps_and_enough_cells(stop):
+    """Acceptance: 160 km/h, 10 kN m, 120 cells: at most 1,500 steps; twice the cells move the distance by < 0.3 %."""
+    result = stop(*case(160, 10, "shallow-water"))
+    assert result.scenario.tank.liquid.cells == 120
+    assert result.scenario.tank.liquid.slot_speed == 30.0
+    assert 200 < result.steps <= 1500
+    twice = stop(*case(160, 10, "shallow-water", "tank.liquid.cells=240"))
+    assert twice.braking_distance_m == pytest.approx(result.braking_distance_m, rel=3e-3)
+    stiffer = stop(*case(160, 10, "shallow-water", "tank.liquid.slot_speed=60 m/s"))
+    assert stiffer.braking_distance_m == pytest.approx(result.braking_distance_m, rel=3e-3)
+
+
+@pytest.mark.parametrize("liquid", ["rigid", "modal", "shallow-water"])
+def test_every_run_has_verdicts_in_json_hdf5_and_tables(stop, liquid, tmp_path):
+    """Acceptance: values beside limits, wherever a run is told of."""
+    result = stop(*case(80, 10, liquid))
+    verdicts = {check.name: check for check in result.checks}
+    always = {"wheels lifted off", "pitch beyond small angles", "energy ledger residual", "wheel unloading"}
+    own = {"modal": {"surface rise over the room above and below"}, "shallow-water": {"excess of the first slosh frequency"}}
+    assert set(verdicts) == always | own.get(liquid, set())
+    unloading = verdicts["wheel unloading"]
+    assert unloading.limit == UNLOADING_LIMIT == 0.6
+    assert unloading.value == pytest.approx(result.max_wheel_unloading, abs=1e-3)
+    assert unloading.kind == "operation"
+    assert result.in_model_range == (liquid != "modal")
+    told = json.loads(json.dumps(result.summary()))
+    assert told["in_model_range"] == result.in_model_range
+    assert [entry["check"] for entry in told["checks"]] == list(verdicts)
+    assert all({"value", "limit", "within", "kind"} <= set(entry) for entry in told["checks"])
+    assert summary_row(result)["in_model_range"] == result.in_model_range
+    write_history(result, tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert bool(file.attrs["in_model_range"]) == result.in_model_range
+        assert any("wheel unloading" in str(value) for value in file.attrs.values())
+
+
+def test_verdicts_of_the_shallow_water_liquid(stop):
+    """1 % for the paper's tank, and too much for a short one: there the run lies outside its model."""
+    (excess,) = (c for c in stop(*case(80, 5, "shallow-water")).checks if c.name.startswith("excess"))
+    assert 0.009 < excess.value < 0.013
+    assert excess.within
+    short = stop(*case(80, 5, "shallow-water", "tank.length=4 m"))
+    assert not short.in_model_range
+    assert any("frequency" in warning for warning in short.warnings)
+
+
+def test_linear_theory_says_where_it_ends(stop):
+    (rise,) = (c for c in stop(*case(80, 10, "modal")).checks if c.name.startswith("surface"))
+    assert rise.value > 1.5
+    assert rise.limit == 1.0
+    assert stop(*case(80, 2.5, "modal")).in_model_range
+
+
+def test_the_table_of_a_study_says_which_stops_left_their_model_s_range():
+    assert "in_model_range" in columns(build(Wishes(liquids="rigid,modal,shallow-water")))
+
+
+def test_baffles_calm_a_stop(stop):
+    """Two walls with a fifth open: less slosh, wheels that keep more load, and a ledger that still closes."""
+    walls = "tank.baffles=[{position: 5 m, opening: 0.2}, {position: 10 m, opening: 0.2}]"
+    with_walls, without = stop(*case(80, 5, "shallow-water", walls)), stop(*case(80, 5, "shallow-water"))
+    assert with_walls.status == "stopped"
+    assert with_walls.energy_residual <= 1e-4
+    assert with_walls.max_surface_m < without.max_surface_m
+    assert min(with_walls.min_wheel_load_N) > min(without.min_wheel_load_N)
+
+
+WITHOUT_BOTTOM = (
+    ("step - liquid.mass * liquid.gravity * pitch\n", "step\n"),
+    (
+        "- liquid.mass * (after - before)\n",
+        "- liquid.mass * (after - before) + 0.5 * step * liquid.mass * liquid.gravity * (start.q[CAR_PITCH] + end.q[CAR_PITCH])\n",
+    ),
+)
+"""Takes the bottom's share `- m_l g theta` out of the liquid's force on the tank (model section 10)."""
+
+
+@pytest.mark.slow
+def test_without_the_bottom_s_share_the_distance_is_a_per_cent_off(stop, tmp_path):
+    """A copy of the program without it: the stop that is within 1 % of the rigid load's no longer is."""
+    for part in ("slosh_cli", "scenarios"):
+        shutil.copytree(ROOT / part, tmp_path / part, ignore=shutil.ignore_patterns("__pycache__"))
+    file = tmp_path / "slosh_cli" / "solver" / "cells.py"
+    text = file.read_text(encoding="utf-8")
+    for old, new in WITHOUT_BOTTOM:
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text, encoding="utf-8")
+    name, *overrides = case(80, 5, "shallow-water")
+    code = (
+        "import sys; from slosh_cli import load_scenario, simulate;"
+        "print(simulate(load_scenario(sys.argv[1], sys.argv[2:])).braking_distance_m)"
+    )
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    command = [sys.executable, "-c", code, str(tmp_path / "scenarios" / f"{name}.yaml"), *overrides]
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+    whole, solid = (stop(*case(80, 5, liquid)).braking_distance_m for liquid in ("shallow-water", "rigid"))
+    assert abs(float(run.stdout) / whole - 1) > 5e-3
+    assert abs(float(run.stdout) / solid - 1) > 1e-2

@@ -1,0 +1,38 @@
+"""Answers that change need a new RESULT_VERSION: a journal must not mix old stops with new ones."""
+
+from typing import Any
+
+import pytest
+
+from slosh_cli.scenario import Scenario, replace
+from slosh_cli.study.key import RESULT_VERSION
+from slosh_cli.study.outcome import solve
+from slosh_cli.study.plan import Stop
+
+ACCURACY = 2e-4
+"""What the default tolerance promises, and a little; a change within it is none."""
+
+# key path -> value, braking distance in m with solver.tolerance 1e-6
+ANSWERS: dict[int, list[tuple[dict[str, Any], float]]] = {
+    1: [
+        ({"braking.torque": "2.5 kN m"}, 430.0477),
+        ({"tank.coefficients": "computed"}, 218.4000),
+        ({"tank.liquid.model": "rigid"}, 218.5250),
+        ({"tank.liquid.model": "rigid", "braking.torque": "15 kN m", "contact.adhesion": "wet"}, 182.9485),
+    ],
+}
+
+
+@pytest.mark.parametrize("number", range(len(ANSWERS[RESULT_VERSION])))
+def test_answers_are_those_of_this_result_version(paper: Scenario, number: int) -> None:
+    changes, distance = ANSWERS[RESULT_VERSION][number]
+    scenario = replace(paper, changes)
+    found = solve(Stop(0, "", scenario)).answer["braking_distance_m"]
+    assert found == pytest.approx(distance, rel=ACCURACY), "raise RESULT_VERSION and add its answers here"
+
+
+def test_the_liquid_of_a_real_stop_is_judged(paper: Scenario) -> None:
+    strong = {"braking.torque": "10 kN m", "solver.tolerance": 1e-2}
+    assert solve(Stop(0, "", replace(paper, strong))).answer["liquid_in_range"] is False
+    assert solve(Stop(0, "", replace(paper, strong | {"tank.liquid.model": "rigid"}))).answer["liquid_in_range"] is True
+    assert solve(Stop(0, "", replace(paper, {"braking.torque": "2 kN m"}))).answer["liquid_in_range"] is True

@@ -1,0 +1,136 @@
+"""Baffles: transverse walls with an opening, a partial reflection and a quadratic loss."""
+
+import numpy as np
+import pytest
+from scipy.optimize import curve_fit
+from shallow_tools import BOX, CIRCLE, LENGTH, G, history, liquid_in, moving, places
+
+from slosh_cli.errors import SloshError
+from slosh_cli.tank.still import baffle_loss
+
+WAVE = np.sqrt(G * CIRCLE.area(1.5) / 3.0)
+
+
+def walled(opening, cells=120, section=CIRCLE):
+    loss = {} if opening is None else {cells // 2: baffle_loss(opening)}
+    return liquid_in(section, cells, 1.5, loss=loss)
+
+
+def test_loss_of_a_sharp_edged_opening():
+    """Idelchik's thin orifice: none when open, 18.5 at 0.3 (diagram 4-10), without bound when closed."""
+    assert baffle_loss(1.0) == 0.0
+    assert baffle_loss(0.3) == pytest.approx(18.2, rel=0.03)
+    openings = np.linspace(0.01, 1.0, 100)
+    assert np.all(np.diff([baffle_loss(opening) for opening in openings]) < 0)
+
+
+def test_an_opening_of_the_whole_wall_is_no_wall():
+    with_wall, without = moving(walled(1.0)), moving(walled(None))
+    assert np.array_equal(with_wall.advance(-1.0, 5.0), without.advance(-1.0, 5.0))
+    assert np.array_equal(with_wall.area, without.area)
+    assert np.array_equal(with_wall.flow, without.flow)
+
+
+def test_a_wall_that_is_nearly_open_tends_to_none_with_the_cells():
+    gaps = []
+    for cells in (120, 240, 480):
+        with_wall, without = moving(walled(0.999, cells)), moving(walled(None, cells))
+        with_wall.advance(-1.0, 4.0)
+        without.advance(-1.0, 4.0)
+        gaps.append(np.abs(with_wall.depth - without.depth).mean())
+    assert gaps[0] < 0.01
+    assert gaps[0] > 1.6 * gaps[1] > 2.5 * gaps[2]
+
+
+def test_a_nearly_closed_wall_makes_two_tanks_of_half_the_period():
+    liquid = walled(0.01)
+    time, force, _ = history(moving(liquid), -0.02 * G, 20.0, 0.05)
+    force /= liquid.mass * 0.02 * G
+    odd = np.arange(1, 40, 2)
+
+    def series(time, frequency, share):
+        return 1 - share * sum(8 / (np.pi * n) ** 2 * np.cos(n * frequency * time) for n in odd)
+
+    halves = 2 * np.pi * WAVE / LENGTH
+    (frequency, share), _ = curve_fit(series, time, force, p0=[halves, 1.0])
+    assert frequency == pytest.approx(halves, rel=5e-3)
+    assert share > 0.7
+
+
+def swinging(liquid, speed):
+    """The first mode as it passes through level, `speed` m/s in the middle of the tank."""
+    tank = moving(liquid)
+    tank.flow[:] = tank.area * speed * np.cos(np.pi * places(liquid) / LENGTH)
+    return tank
+
+
+def lost_in_a_period(opening, speed):
+    tank = swinging(walled(opening), speed)
+    before, level = tank.energy, moving(tank.liquid).energy
+    tank.advance(0.0, 2 * LENGTH / WAVE)
+    return (before - tank.energy) / (before - level)
+
+
+def test_loss_grows_with_a_smaller_opening():
+    """Acceptance; down to where the wall holds so much back that the tank falls into two."""
+    losses = [lost_in_a_period(opening, 0.2) for opening in (None, 0.9, 0.7, 0.5, 0.3, 0.2)]
+    assert np.all(np.diff(losses[1:]) > 0)
+    assert losses[1] == pytest.approx(losses[0], abs=0.02)
+    assert losses[-1] > 0.5
+
+
+def test_loss_of_a_wide_opening_is_that_of_the_quadratic_law():
+    """A weak baffle takes `INT rho K A |u|^3/2 dt = (2/3 pi) rho K A u^3 T` per period; u in the middle of the tank."""
+    speed, opening, period = 0.3, 0.7, 2 * LENGTH / WAVE
+    extra = lost_in_a_period(opening, speed) - lost_in_a_period(0.999999, speed)
+    energy = CIRCLE.area(1.5) * LENGTH * speed**2 / 4
+    expected = 2 / (3 * np.pi) * baffle_loss(opening) * CIRCLE.area(1.5) * speed**3 * period / energy
+    assert extra == pytest.approx(expected, rel=0.15)
+
+
+@pytest.mark.parametrize("walls", [{}, {60: 18.0}, {40: 250.0, 80: 250.0}, {2: 3e4, 117: 0.1}])
+def test_momentum_and_mass_balance_with_baffles(walls):
+    """In a box, whose cells hold exactly their mass; what the walls push is what the liquid lost, to rounding."""
+    liquid = liquid_in(BOX, 120, 1.2, loss=walls)
+    tank = moving(liquid)
+    mass = tank.area.sum()
+    impulse = tank.advance(-1.0, 4.0)[0]
+    lost = liquid.mass * 4.0 - liquid.density * liquid.spacing * tank.flow.sum()
+    assert impulse == pytest.approx(lost, rel=1e-11)
+    assert tank.area.sum() == pytest.approx(mass, rel=1e-12)
+
+
+@pytest.mark.parametrize("opening", [0.9, 0.3, 0.01])
+def test_a_baffle_never_feeds_energy(opening):
+    tank = swinging(walled(opening), 1.5)
+    energies = [tank.energy]
+    for _ in range(150):
+        tank.advance(0.0, 0.05)
+        energies.append(tank.energy)
+    assert np.all(np.diff(energies) <= 0.0)
+
+
+def test_a_still_tilted_surface_stays_still_across_a_baffle():
+    liquid = walled(0.3)
+    tank = moving(liquid, 1.5 - 0.05 * places(liquid))
+    area = tank.area.copy()
+    tank.advance(0.05 * G, 10.0)
+    assert np.abs(tank.flow).max() < 1e-11
+    assert np.abs(tank.area - area).max() < 1e-11
+
+
+def test_the_modal_liquid_refuses_baffles(shipped):
+    with pytest.raises(SloshError, match="modal"):
+        shipped("paper_80", "tank.baffles=[{position: 5 m, opening: 0.3}]")
+    shallow = shipped(
+        "paper_80", "tank.liquid.model=shallow-water", "tank.baffles=[{position: 5 m, opening: 0.3}]"
+    )
+    assert len(shallow.tank.baffles) == 1
+
+
+@pytest.mark.parametrize("position", ["0 m", "0.05 m", "15.49 m", "20 m"])
+def test_a_baffle_in_an_end_wall_or_outside_is_refused(shipped, position):
+    with pytest.raises(SloshError, match="position"):
+        shipped(
+            "paper_80", "tank.liquid.model=shallow-water", f"tank.baffles=[{{position: {position}, opening: 0.3}}]"
+        )

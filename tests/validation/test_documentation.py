@@ -1,0 +1,87 @@
+"""The pages of the documentation: built from the cases, complete, and right in what they say in prose."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from slosh_cli.cli import main
+from slosh_cli.validation import registry
+from slosh_cli.validation.case import CaseResult, Row
+from slosh_cli.validation.chart import Chart, Panel, curve
+from slosh_cli.validation.data_file import read_case
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
+
+
+@pytest.fixture(scope="module")
+def hooks():
+    specification = importlib.util.spec_from_file_location("docs_hooks", DOCS / "hooks.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def made_up(data):
+    rows = (
+        Row("some | quantity", 1.0, 2.0, 0.5, 0.1, data.source, "relative"),
+        Row("a note", 3.0, None, None, None, ""),
+    )
+    return CaseResult(data, rows, Chart((Panel("x", "y", (curve("line", [0, 1], [0, 1]),)),)), 0.1)
+
+
+def test_the_manual_has_every_case_tolerance_reason_and_sabotage(hooks):
+    cases = [read_case(name) for name in registry.NAMES if name != "second-code"]
+    text = hooks.manual([made_up(data) for data in cases], [read_case("second-code")])
+    for data in cases:
+        assert f"\n## {data.name}\n" in text
+        for said in (data.question, data.source, *data.errata, *(entry.reason for entry in data.tolerances.values())):
+            assert said.replace("|", "\\|") in text or said in text
+        for catch in data.catches:
+            assert f"| {catch.error} | {data.name} |" in text
+    assert "needs `exudyn`" in text
+    assert "some \\| quantity" in text
+    assert "fell short" in text
+
+
+def test_rows_of_a_case_take_the_place_of_their_mark(hooks):
+    text = hooks.with_rows("before\n{{ rows polach | quantity }}\nafter", lambda name: made_up(read_case(name)))
+    assert "`slosh validate polach`" in text
+    assert "some \\| quantity" in text
+    assert "a note" not in text
+    with pytest.raises(ValueError, match="no row about 'nonsense'"):
+        hooks.with_rows("{{ rows polach | nonsense }}", lambda name: made_up(read_case(name)))
+
+
+def test_every_mark_in_the_pages_finds_rows(hooks):
+    marks = [match for page in PAGES for match in hooks.ROWS.finditer(page.read_text(encoding="utf-8"))]
+    assert len(marks) >= 4
+    for match in marks:
+        assert match[1] in registry.NAMES
+        if read_case(match[1]).quick and match[2]:
+            assert any(match[2] in row.quantity for row in hooks.result_of(match[1]).rows)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_and_images_lead_somewhere(page):
+    made_when_built = {"validation.md"}
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+        assert target in made_when_built or (DOCS / target).exists(), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_in_the_pages_exist(page, capsys):
+    for command, name in re.findall(r"`slosh (\w+)(?: ([\w-]+))?", page.read_text(encoding="utf-8")):
+        if command == "validate" and name:
+            assert name in registry.NAMES
+        assert main([command, "--help"]) == 0
+        capsys.readouterr()
+
+
+def test_what_the_findings_say_in_prose(stop):
+    """Surface at roof and bottom at 5 kN m, past them at 7.5 kN m."""
+    at_five, at_more = (stop("paper_80", f"braking.torque={torque} kN m") for torque in (5, 7.5))
+    assert at_five.max_surface_m == pytest.approx(at_five.surface_limit_m, rel=0.01)
+    assert at_more.max_surface_m > 1.3 * at_more.surface_limit_m
