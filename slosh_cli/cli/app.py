@@ -4,11 +4,11 @@ from typing import Annotated, Final
 
 import typer
 
-from slosh_cli.cli import check, init, plot, run, schema, sweep, validate
+from slosh_cli.cli import check, init, plot, run, schema, sweep, tank, validate
 from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
-_MODULES: Final = (init, check, run, sweep, plot, schema, validate)
+_MODULES: Final = (init, check, run, sweep, tank, plot, schema, validate)
 
 _EPILOG: Final = (
     "Exit codes: 0 done, 1 a validation fell short, 2 the input is wrong, 3 a run ended without an answer, "

@@ -15,6 +15,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
 
 from slosh_cli.report import figures
 from slosh_cli.report.figures import FORMATS, FRONT, INK, MUTED, REAR, STYLE
@@ -126,7 +127,7 @@ def chart_figure(chart: FillChart, heading: Heading, fill: float) -> Figure:
     quantities = (
         (chart.frequency, "frequency / rad/s"),
         (chart.mass_fraction, "slosh mass / liquid mass"),
-        (chart.height, "height of the force above the bottom / m"),
+        (chart.height, "height of the force\nabove the bottom / m"),
     )
     percent = 100.0 * chart.fill
     marker = "o" if len(percent) < 40 else None
@@ -151,11 +152,10 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
     shape = mode.shape
     levels = np.linspace(float(shape.potential.min()), float(shape.potential.max()), 13)
     if levels[-1] > levels[0]:
-        filled = axes.tricontourf(shape.y, shape.z, shape.triangles, shape.potential, levels=levels, cmap="Blues")
-        axes.tricontour(
-            shape.y, shape.z, shape.triangles, shape.potential, levels=levels, colors=INK, linewidths=0.4
-        )
-        bar = axes.figure.colorbar(filled, ax=axes, shrink=0.8)
+        mesh = Triangulation(shape.y, shape.z, shape.triangles)
+        filled = axes.tricontourf(mesh, shape.potential, levels=levels, cmap="Blues")
+        axes.tricontour(mesh, shape.potential, levels=levels, colors=INK, linewidths=0.4)
+        bar = axes.figure.colorbar(filled, ax=axes, shrink=0.8, ticks=levels[::3], format="%.3g")
         bar.set_label("potential φ / m")
     depth = float(shape.z.max())
     lift = depth + SURFACE_SHARE * height * shape.surface_rise
@@ -164,6 +164,7 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
     for side in _outline(tank, height):
         axes.plot(*side, color=INK, linewidth=2.2)
     axes.set_aspect("equal")
+    axes.margins(0.04)
     axes.grid(visible=False)
     axes.set_xlabel("y / m")
     axes.set_ylabel("z above the bottom / m")

@@ -22,6 +22,8 @@ from slosh_cli.version import __version__
 if TYPE_CHECKING:
     import pandas as pd
 
+    from slosh_cli.scenario import Scenario, TankScenario
+
 FORMAT_VERSION: Final = 1
 SCENARIO: Final = "scenario"
 
@@ -118,6 +120,29 @@ def write_history(result: Result, path: Path) -> None:
             file.attrs[key] = value
 
 
+def write_excitation(
+    scenario: "Scenario | TankScenario",
+    time: Vector,
+    channels: Mapping[Channel, Vector],
+    facts: Mapping[str, Any],
+    path: Path,
+) -> None:
+    """Write the history of a tank alone: `channels` at `time` (s), the scenario, `facts` as root attributes.
+
+    The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
+    """
+    from slosh_cli.scenario import scenario_to_yaml
+
+    with replacing(path) as temporary, h5py.File(temporary, "x") as file:
+        axis = _write_channel(file, TIME, time)
+        axis.make_scale(TIME.name)
+        for info, values in channels.items():
+            _write_channel(file, info, values).dims[0].attach_scale(axis)
+        file.create_dataset(SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
+        for key, value in {"excitation_format_version": FORMAT_VERSION, **_circumstances(), **facts}.items():
+            file.attrs[key] = value
+
+
 def read_history(path: Path) -> History:
     """Read a history file.
 
@@ -143,10 +168,9 @@ def _write_channel(file: h5py.File, info: Channel, values: Vector) -> h5py.Datas
     return dataset
 
 
-def _attributes(result: Result) -> dict[str, Any]:
-    """Root attributes: circumstances, summary, ledger. None becomes NaN, several warnings become lines."""
-    circumstances = {
-        "format_version": FORMAT_VERSION,
+def _circumstances() -> dict[str, Any]:
+    """Which program wrote the file, when and where."""
+    return {
         "program": "slosh",
         "program_version": __version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -155,6 +179,11 @@ def _attributes(result: Result) -> dict[str, Any]:
         "numba_version": version("numba"),
         "platform": f"{platform.platform()} {sys.byteorder}-endian",
     }
+
+
+def _attributes(result: Result) -> dict[str, Any]:
+    """Root attributes: circumstances, summary, ledger. None becomes NaN, several warnings become lines."""
+    circumstances = {"format_version": FORMAT_VERSION, **_circumstances()}
     summary = result.summary() | {
         "reason": result.reason,
         "warnings": "\n".join(" ".join(warning.split()) for warning in result.warnings),

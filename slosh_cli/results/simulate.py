@@ -70,6 +70,8 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     clock, onset = run.state.clock, run.state.counts[state.PHASE] > 0
     status, reason = _OUTCOMES[run.outcome]
     stopped = status is Status.STOPPED and onset
+    if status is Status.STOPPED and not onset:
+        status, reason = Status.FAILED, "came to rest at t = {time:.4g} s, before the brake set in: no braking distance"
     tank, weight = scenario.tank, stop.weight
     verdicts = checks(_extent(scenario, stop, run))
     return Result(

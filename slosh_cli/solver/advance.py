@@ -8,7 +8,6 @@ from slosh_cli.compiled import inner_kernel, kernel
 from slosh_cli.solver.cells import FORCE, LOSS, MOMENT, cells_rise, settle_cells
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
-    CONTACT_EVENT,
     EVENT_COUNT,
     EVENT_TOLERANCE,
     FLOOR_EVENT,
@@ -87,7 +86,7 @@ def _make_consistent(model, scratch, state):
     solved = solve_stage(model, scratch, state.work, base, start, state.locked, 0.0, torque, push[FORCE], push[MOMENT])
     balance(model, state.cells_start, start, state.energies)
     copy(state.energies, state.energies_before)
-    event_values(model, start, state.locked, state.airborne, torque, state.values_before)
+    event_values(model, start, state.locked, torque, state.values_before)
     return solved
 
 
@@ -168,14 +167,10 @@ def _apply_events(state, before, after):
         if not reached(before, after, k):
             continue
         switched = True
-        if k < CONTACT_EVENT:
+        if k < FLOOR_EVENT:
             wheel = k - BRAKE_EVENT
             state.locked[wheel] = not state.locked[wheel]
             state.start.v[WHEEL_SPIN + wheel] = 0.0
-        elif k < FLOOR_EVENT:
-            wheel = k - CONTACT_EVENT
-            state.airborne[wheel] = not state.airborne[wheel]
-            state.lifted[0] += 1
         elif k == STOP_EVENT:
             outcome = STOPPED
         elif k == PITCH_EVENT:
@@ -184,18 +179,26 @@ def _apply_events(state, before, after):
 
 
 @inner_kernel
-def _switch_unarmed(state, before, after):
-    """Switch wheels whose event went the wrong way from the very start of a step of no length."""
+def _switch_at_start(state, before, after, step):
+    """Switch wheels whose event lies no further than the shortest step from the start of the one in hand."""
     switched = False
-    for k in range(FLOOR_EVENT):
-        if after[k] < 0.0 and before[k] < EVENT_TOLERANCE and after[k] < before[k]:
+    for wheel in range(WHEELS):
+        k = BRAKE_EVENT + wheel
+        if after[k] < -EVENT_TOLERANCE and step * before[k] <= 2.0 * SHORTEST_STEP * (before[k] - after[k]):
             switched = True
-            if k < CONTACT_EVENT:
-                state.locked[k] = not state.locked[k]
-                state.start.v[WHEEL_SPIN + k] = 0.0
-            else:
-                state.airborne[k - CONTACT_EVENT] = not state.airborne[k - CONTACT_EVENT]
+            state.locked[wheel] = not state.locked[wheel]
+            state.start.v[WHEEL_SPIN + wheel] = 0.0
     return switched
+
+
+@inner_kernel
+def _follow_contacts(state):
+    """Count the wheels that left the rail or came back to it in the step in hand."""
+    for i in range(WHEELS):
+        for normal in (state.middle.normal[i], state.end.normal[i]):
+            if (normal <= 0.0) != state.airborne[i]:
+                state.airborne[i] = not state.airborne[i]
+                state.lifted[0] += 1
 
 
 @inner_kernel
@@ -209,6 +212,7 @@ def _accept(model, state, rows, step):
         state.residual[1] = state.residual[0]
         return False
     _settle_extremes(model, state, step)
+    _follow_contacts(state)
     _copy_point(state.end, state.start)
     settle_cells(state)
     copy(state.energies, state.energies_before)
@@ -254,11 +258,11 @@ def _event_step(model, state, step, time):
     """Shorter step where an event falls inside the one in hand (its middle stage is looked at too)."""
     phase = state.counts[PHASE]
     torque = brake_torque(model.brake, time + step, phase)
-    event_values(model, state.middle, state.locked, state.airborne, torque, state.values)
+    event_values(model, state.middle, state.locked, torque, state.values)
     shorter = min(step, shorter_step(state.values_before, state.values, GAMMA * step))
     if shorter >= GAMMA * step:
         shorter = step
-    event_values(model, state.end, state.locked, state.airborne, torque, state.values)
+    event_values(model, state.end, state.locked, torque, state.values)
     return min(shorter, shorter_step(state.values_before, state.values, step))
 
 
@@ -315,13 +319,14 @@ def advance(model, scratch, state, rows, most_steps):
             if shorter < step:
                 tries += 1
                 state.counts[REJECTED] += 1
-                if shorter < SHORTEST_STEP or tries > 40:
+                if shorter < 2.0 * SHORTEST_STEP or tries > 60:
                     break
-                step = shorter
+                # a straight line may creep towards a bent event from beyond it: halving does not
+                step = shorter if tries < 3 else min(shorter, 0.5 * step)
                 continue
             accepted = True
         if not accepted:
-            if not _switch_unarmed(state, state.values_before, state.values):
+            if not _switch_at_start(state, state.values_before, state.values, step):
                 return STALLED_EVENTS
             outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:

@@ -1,7 +1,8 @@
-"""Events that end a step: lock, release, lift-off, landing, creepage floor, stop, overturning.
+"""Events that end a step: lock, release, creepage floor, stop, overturning.
 
 Each event has a value that is positive until it happens. A value is *armed* once it has been clearly positive; a
-wheel just released has exactly zero speed and so cannot relock before it has turned (model section 11).
+wheel just released has exactly zero speed and so cannot relock before it has turned (model section 11). Lift-off and
+landing are no events: the force of a contact rises from zero with the power 3/2, so that accelerations do not jump.
 """
 
 from __future__ import annotations
@@ -9,19 +10,19 @@ from __future__ import annotations
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.track.vectors import fill
-from slosh_cli.wagon.coordinates import BOGIE_PITCH, CAR_PITCH, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+from slosh_cli.wagon.coordinates import BOGIE_PITCH, CAR_PITCH, WHEEL_SPIN, WHEELS
 
-# places of the event values: four of brake, four of contact, then these
-BRAKE_EVENT, CONTACT_EVENT, FLOOR_EVENT, STOP_EVENT, PITCH_EVENT = 0, 4, 8, 9, 10
-EVENT_COUNT = 11
+# places of the event values: four of the brakes, then these
+BRAKE_EVENT, FLOOR_EVENT, STOP_EVENT, PITCH_EVENT = 0, 4, 5, 6
+EVENT_COUNT = 7
 EVENT_TOLERANCE = 1e-6
-"""An event is reached when its value is this close to zero (m/s, or relative to torque, approach, pitch limit)."""
+"""An event is reached when its value is this close to zero (m/s, or relative to torque, pitch limit)."""
 LARGEST_PITCH = 0.1
 """Small-angle kinematics say nothing beyond this pitch, rad (model section 9)."""
 
 
 @inner_kernel
-def event_values(model, point, locked, airborne, torque, values):
+def event_values(model, point, locked, torque, values):
     """Values of all events at `point` into `values` (EVENT_COUNT,); those that cannot happen are 1."""
     radius = model.wagon.wheel_radius
     fill(values, 1.0)
@@ -31,9 +32,6 @@ def event_values(model, point, locked, airborne, torque, values):
             values[BRAKE_EVENT + i] = 1.0 - point.creep[i] * radius / torque
         elif torque > 0.0:
             values[BRAKE_EVENT + i] = radius * point.v[WHEEL_SPIN + i]
-        approach = point.rail[model.rail.contact[i]] - point.q[WHEEL_HEAVE + i]
-        relative = approach / model.control.approach_scale
-        values[CONTACT_EVENT + i] = -relative if airborne[i] else relative
     values[FLOOR_EVENT] = speed - CREEPAGE_SPEED_FLOOR
     values[STOP_EVENT] = speed - model.control.stop_speed
     pitch = abs(point.q[CAR_PITCH])

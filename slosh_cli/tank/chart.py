@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,15 +30,19 @@ class FillChart:
     skipped: dict[float, str]
 
 
-def fill_chart(tank: TankGeometry, fills: Sequence[float], count: int = 1) -> FillChart:
+def fill_chart(
+    tank: TankGeometry, fills: Sequence[float], count: int = 1, progress: Callable[[int, int], None] | None = None
+) -> FillChart:
     """The first `count` odd modes at each of `fills` (depth over height, between 0 and 1).
 
-    The tank's own filling and its liquid have no part in it.
+    The tank's own filling and its liquid have no part in it. `progress` is told how many of how many are done.
     """
     section = section_of(tank)
     values = np.full((3, count, len(fills)), np.nan)
     skipped: dict[float, str] = {}
     for column, fill in enumerate(fills):
+        if progress is not None:
+            progress(column, len(fills))
         depth = fill * section.height
         try:
             modes = longitudinal_modes(section, depth, tank.length, count).modes

@@ -5,7 +5,7 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Lock
@@ -101,3 +101,12 @@ def journal_rows(journal: Path) -> dict[str, tuple[object, ...]]:
         if not file.execute("SELECT 1 FROM sqlite_master WHERE name = 'stop'").fetchone():
             return {}
         return {row[0]: row for row in file.execute("SELECT key, status, answer, seconds, finished, session FROM stop")}
+
+
+def count(journal: Path) -> int:
+    """How many stops a journal holds, while another process may be writing it."""
+    if not journal.exists():
+        return 0
+    with closing(sqlite3.connect(journal)) as file, suppress(sqlite3.OperationalError):
+        return int(file.execute("SELECT count(*) FROM stop").fetchone()[0])
+    return 0

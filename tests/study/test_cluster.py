@@ -89,8 +89,8 @@ def test_the_rows_are_the_same_to_the_last_bit_on_one_thread_two_threads_and_a_c
     tmp_path: Path, processes: Processes
 ) -> None:
     tables = {}
-    grid = ["sweep", "--v0", "60", "--torque", "5:25:10", "--vary", "tank.fill=0.4,0.5", "--set", "name=cheap"]
-    grid += ["--set", "tank.coefficients=computed", "--set", "tank.modes=2", "--json"]
+    grid = ["sweep", "--v0", "40", "--torque", "5:25:4", "--set", "name=cheap", "--set", "solver.tolerance=1e-3"]
+    grid += ["--set", "tank.coefficients=computed", "--json"]
     for name, how in {"one": ["--jobs", 1], "two": ["--jobs", 2], "dask": ["--cluster", processes.address]}.items():
         where = folder(tmp_path, name)
         code, out, err = run_slosh(where, *grid, *how)

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from study_tools import CHEAP, begun, journal_rows, run_slosh, start_slosh
+from study_tools import CHEAP, begun, count, journal_rows, run_slosh, start_slosh
 
 TABLE = "outputs/cheap/braking_distance.csv"
 JOURNAL = "outputs/cheap/journal.sqlite"
@@ -47,7 +47,7 @@ def kill_at_random_moments(where: Path, stops: int, kills: int, seed: int) -> No
         if number % 4 == 0:
             time.sleep(chance.uniform(0.0, 1.5))
         else:
-            while not begun(where) and process.poll() is None:
+            while count(where / JOURNAL) <= len(before) and process.poll() is None:
                 time.sleep(0.002)
             time.sleep(chance.uniform(0.0, 1.5 * stops / kills * 0.01))
         process.send_signal(signal.SIGKILL)
@@ -57,7 +57,7 @@ def kill_at_random_moments(where: Path, stops: int, kills: int, seed: int) -> No
         assert not set(begun(where)) & set(before)
         assert len(set(begun(where))) == len(begun(where))
         sessions_with_progress += len(after) > len(before)
-    assert sessions_with_progress > kills // 4
+    assert sessions_with_progress >= kills // 2
     (where / "begun.log").unlink(missing_ok=True)
 
 

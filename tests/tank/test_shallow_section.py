@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shallow_tools import G, HEXAGON, SECTIONS, depths, inverse_error, liquid_in, moving, places
+from shallow_tools import HEXAGON, SECTIONS, G, depths, inverse_error, liquid_in, moving, places
 from tank_examples import BOTTLE, THREE_TROUGHS
 
 from slosh_cli.tank.section import PolygonalSection

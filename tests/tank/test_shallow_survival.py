@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shallow_tools import BOX, CIRCLE, G, HEXAGON, SECTIONS, areas, dam, liquid_in, moving, places
+from shallow_tools import BOX, CIRCLE, HEXAGON, SECTIONS, G, areas, dam, liquid_in, moving, places
 
 TILTED = {"slightly": 0.04, "strongly": 0.3}
 """Rise at a wall over the height of the section."""

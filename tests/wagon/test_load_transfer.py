@@ -145,7 +145,6 @@ def test_brakes_pitch_the_bogies_nose_down_and_load_their_leading_wheels(stop):
     assert np.all(result.channels["car_pitch"][braking] > 0)
 
 
-def test_load_of_a_tilted_tank_is_in_the_statics(shipped):
-    """The tilt term is small here, but not what makes the statics agree by chance."""
+def test_load_of_these_statics_is_that_of_the_half_cylinder(shipped):
     load = half_full_cylinder(shipped("paper_160_solid"))
     assert (load.mass, load.centre) == pytest.approx((LOAD_MASS, LOAD_HEIGHT - 1.15), rel=1e-12)

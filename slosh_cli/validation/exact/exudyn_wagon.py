@@ -287,6 +287,7 @@ def _slosh(build: _Builder, bodies: Bodies, car: int, mode: SloshMode, sunk: flo
 def exudyn_stop(scenario: Scenario, mode: SloshMode, duration: float, step: float) -> Histories:
     """The first `duration` s of the scenario's stop on a rigid rail, by the trapezoidal rule in steps of `step` s."""
     exu = import_module("exudyn")
+    exu.config.printToConsole = False  # stdout belongs to the answer
     system = exu.SystemContainer().AddSystem()
     sensors = _build(system, scenario, mode)
     system.Assemble()

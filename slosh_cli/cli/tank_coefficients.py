@@ -1,0 +1,189 @@
+"""What `slosh tank coefficients` computes, prints and writes."""
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import say, say_json, show, warn
+from slosh_cli.cli.reading import read_any_scenario
+from slosh_cli.tank.coefficients import SloshMode, tank_modes
+from slosh_cli.tank.comparison import ModeComparison, compare_modes, impossible_fractions
+from slosh_cli.tank.errors import TankError
+from slosh_cli.tank.inertia import stokes_joukowski_inertia
+from slosh_cli.tank.load import FrozenLoad, frozen_load
+from slosh_cli.tank.longitudinal import LongitudinalModes
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from slosh_cli.scenario import Scenario, TankScenario
+
+TABLE: Final = "coefficients.csv"
+COLUMNS: Final = {
+    "omega_rad_s": "frequency",
+    "lambda_1_kg": "lambda_1",
+    "lambda_02_kg_m": "lambda_02",
+    "mu_kg": "mu",
+    "mass_fraction": "mass_fraction",
+    "height_m": "height",
+}
+"""Key of JSON and CSV -> name of the quantity in `ModeComparison.deviations`."""
+
+
+@dataclass(frozen=True)
+class Findings:
+    """All that is said about a tank. `lidded_inertia` kg m^2 is None where it could not be computed."""
+
+    name: str
+    load: FrozenLoad
+    rows: Sequence[ModeComparison]
+    solved: LongitudinalModes
+    lidded_inertia: float | None
+    warnings: Sequence[str]
+    wall_seconds: float
+
+
+def show_coefficients(
+    scenario_file: Path, modes: int | None, overrides: Sequence[str] | None, output: Path | None, *, as_json: bool
+) -> ExitCode:
+    """Compute, write where a folder is given, and tell."""
+    scenario = read_any_scenario(scenario_file, overrides)
+    found = find(scenario, modes)
+    files = _write(scenario, found, output) if output is not None else {}
+    if as_json:
+        say_json(as_dict(found) | {"files": files})
+        for warning in found.warnings:
+            warn(warning)
+    else:
+        _show(found)
+        if files:
+            say(f"\n  table    {files['table']}\n  figures  {', '.join(files['figures'])}")
+    return ExitCode.DONE
+
+
+def find(scenario: "Scenario | TankScenario", modes: int | None) -> Findings:
+    """Computed and given modes of the scenario's tank, and its load."""
+    tank, began = scenario.tank, time.perf_counter()
+    rows = compare_modes(tank, modes)
+    warnings = list(impossible_fractions(tank))
+    lidded = None
+    try:
+        lidded = stokes_joukowski_inertia(tank)
+    except TankError as error:
+        warnings.append(f"no pitch inertia of an ideal liquid under a lid: {error.message}")
+    solved = tank_modes(tank, len(rows))  # kept from the comparison
+    seconds = time.perf_counter() - began
+    return Findings(scenario.name, frozen_load(tank), rows, solved, lidded, warnings, seconds)
+
+
+def as_dict(found: Findings) -> dict[str, Any]:
+    """The findings as the JSON object has them."""
+    return {
+        "name": found.name,
+        "liquid_mass_kg": found.load.mass,
+        "centroid_m": found.load.centre_height,
+        "pitch_inertia_frozen_kg_m2": found.load.pitch_inertia,
+        "pitch_inertia_stokes_joukowski_kg_m2": found.lidded_inertia,
+        "modes": [_values(row.n, row.computed, row.computed_fraction) for row in found.rows],
+        "given": [_values(row.n, row.given, row.given_fraction) for row in found.rows if row.given is not None],
+        "deviations_percent": [
+            {"n": row.n, **{key: 100.0 * row.deviations()[name] for key, name in COLUMNS.items()}}
+            for row in found.rows
+            if row.given is not None
+        ],
+        "accuracy": {
+            "frequency_change": found.solved.relative_change,
+            "height_change": found.solved.height_change,
+            "unknowns": found.solved.unknowns,
+        },
+        "solve_seconds": found.solved.solve_seconds,
+        "warnings": list(found.warnings),
+    }
+
+
+def _values(n: int, mode: SloshMode, fraction: float | None) -> dict[str, Any]:
+    values = {key: getattr(mode, name) for key, name in COLUMNS.items() if name != "mass_fraction"}
+    return {"n": n, **{key: values.get(key, fraction) for key in COLUMNS}}
+
+
+def _show(found: Findings) -> None:
+    from rich.text import Text
+
+    alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in found.warnings]
+    show(_facts(found), "", _modes(found), *([""] if alarms else []), *alarms)
+
+
+def _facts(found: Findings) -> "Table":
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    table.title, table.title_justify, table.title_style = f"{found.name}: the tank alone", "left", "bold"
+    lidded = "-" if found.lidded_inertia is None else f"{found.lidded_inertia:.6g} kg m^2"
+    for row in (
+        ("liquid mass", f"{found.load.mass:.6g} kg"),
+        ("centre above the tank bottom", f"{found.load.centre_height:.4f} m"),
+        ("pitch inertia about the centre, frozen", f"{found.load.pitch_inertia:.6g} kg m^2"),
+        ("the same, ideal liquid under a lid (Stokes-Joukowski)", lidded),
+        ("last change of frequency | height", f"{found.solved.relative_change:.1e} | {found.solved.height_change:.1e}"),
+        ("finite elements", f"{found.solved.unknowns} unknowns, {found.solved.solve_seconds:.2f} s"),
+    ):
+        table.add_row(*row)
+    return table
+
+
+def _modes(found: Findings) -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.add_column("n", justify="right")
+    table.add_column("", no_wrap=True)
+    heads = ("omega\nrad/s", "lambda_1\nkg", "lambda_02\nkg m", "mu\nkg", "mass\nfraction", "height\nm")
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    for row in found.rows:
+        for cells in _lines(row):
+            table.add_row(*cells)
+    return table
+
+
+def _lines(row: ModeComparison) -> Iterator[list[str]]:
+    """The computed mode and, where there is one, the given mode and its deviation."""
+    yield [str(row.n), "computed", *_numbers(row.computed, row.computed_fraction)]
+    if row.given is not None and row.given_fraction is not None:
+        yield ["", "given", *_numbers(row.given, row.given_fraction)]
+        yield ["", "given, %", *(f"{100.0 * row.deviations()[name]:+.2f}" for name in COLUMNS.values())]
+
+
+def _numbers(mode: SloshMode, fraction: float) -> list[str]:
+    return [
+        f"{mode.frequency:.6g}",
+        f"{mode.lambda_1:.6g}",
+        f"{mode.lambda_02:.6g}",
+        f"{mode.mu:.6g}",
+        f"{fraction:.5f}",
+        f"{mode.height:.4f}",
+    ]
+
+
+def _write(scenario: "Scenario | TankScenario", found: Findings, folder: Path) -> dict[str, Any]:
+    """Table of all modes and a picture of each, together."""
+    from slosh_cli.report.tank_figures import Heading, draw_mode
+    from slosh_cli.results.files import staging
+    from slosh_cli.results.tables import write_table
+
+    answer = as_dict(found)
+    rows = [{"source": "computed", **row} for row in answer["modes"]]
+    rows += [{"source": "given", **row} for row in answer["given"]]
+    drawn: list[Path] = []
+    with staging(folder) as stage:
+        write_table(rows, stage / TABLE)
+        for mode in found.solved.modes:
+            tank = scenario.tank
+            words = f"{found.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
+            heading = Heading(f"Slosh mode n = {mode.n}", f"{words}{mode.frequency:.4g} rad/s")
+            drawn += draw_mode(mode, tank, heading, stage)
+    return {"table": str(folder / TABLE), "figures": [str(folder / file.name) for file in drawn]}

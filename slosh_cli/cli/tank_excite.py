@@ -1,0 +1,264 @@
+"""What `slosh tank excite` reads, computes, prints and writes."""
+
+import csv
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import complain, note, say, say_json, show, warn
+from slosh_cli.cli.reading import read_any_scenario
+from slosh_cli.errors import UsageError, ValueRefused
+from slosh_cli.scenario import parse_quantity
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario, TankScenario
+    from slosh_cli.solver.excite import Deceleration, Excitation
+
+TABLE: Final = "excite.csv"
+HISTORY: Final = "excite.h5"
+COLUMNS: Final = ("time_s", "deceleration_m_s2")
+MOST_ROWS: Final = 1_000_000
+LARGEST: Final = 1000.0
+"""Decelerations beyond this, m/s^2, are a slip in the unit."""
+REMEDY: Final = "Try more cells (tank.liquid.cells) or a smaller deceleration."
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The options as they were written."""
+
+    deceleration: str | None
+    ramp: str | None
+    duration: str
+    table: Path | None
+    interval: str
+
+
+def run_excitation(
+    scenario_file: Path, wishes: Wishes, overrides: Sequence[str] | None, output: Path | None, *, as_json: bool
+) -> ExitCode:
+    """Compute, write and tell."""
+    scenario = read_any_scenario(scenario_file, overrides)
+    duration, interval = _times(wishes)
+    deceleration = _deceleration(wishes, duration)
+    folder = output or Path("outputs") / scenario.name
+    _announce()
+    from slosh_cli.solver.excite import excite
+
+    found = excite(scenario.tank, deceleration, duration, interval)
+    if found.time.size < 2:
+        complain(f"failed: {found.reason}. {REMEDY}")
+        return ExitCode.NO_ANSWER
+    warnings = _warnings(scenario, found)
+    answer = summary(scenario, found) | {"warnings": warnings}
+    files = _write(scenario, found, answer, folder)
+    if as_json:
+        say_json(answer | {"files": files})
+        for warning in warnings:
+            warn(warning)
+    else:
+        _show(scenario, found, warnings, files)
+    if found.reason:
+        complain(f"failed: {found.reason}. {REMEDY}")
+        return ExitCode.NO_ANSWER
+    return ExitCode.DONE
+
+
+def summary(scenario: "Scenario | TankScenario", found: "Excitation") -> dict[str, Any]:
+    """The peaks as the JSON object has them."""
+    return {
+        "name": scenario.name,
+        "liquid_model": scenario.tank.liquid.model,
+        "max_normalised_force": float(found.normalised_force.max()),
+        "min_normalised_force": float(found.normalised_force.min()),
+        "max_surface_m": found.max_surface,
+        "surface_limit_m": _room(scenario),
+        "max_moment_N_m": float(found.moment.max()),
+        "liquid_mass_kg": found.mass,
+        "mass_error": found.mass_error,
+        "accuracy": found.accuracy,
+        "reason": found.reason,
+    }
+
+
+def _times(wishes: Wishes) -> tuple[float, float]:
+    duration = _positive(wishes.duration, "--duration")
+    interval = _positive(wishes.interval, "--interval")
+    if duration / interval > MOST_ROWS:
+        rule = f"a history has at most {MOST_ROWS} rows; lengthen --interval or shorten --duration"
+        raise UsageError(rule, "--interval")
+    return duration, interval
+
+
+def _deceleration(wishes: Wishes, duration: float) -> "Deceleration":
+    from slosh_cli.solver.excite import Deceleration
+
+    if (wishes.deceleration is None) == (wishes.table is None):
+        raise UsageError("say how the tank is decelerated: --deceleration '0.2 g', or --table FILE.csv", "excite")
+    if wishes.table is not None:
+        if wishes.ramp is not None:
+            raise UsageError("--ramp goes with --deceleration; a table has its own course", "--ramp")
+        found = Deceleration.table(read_table(wishes.table))
+        where = str(wishes.table)
+    else:
+        level = _quantity(wishes.deceleration, "acceleration", "--deceleration")
+        ramp = 0.0 if wishes.ramp is None else _quantity(wishes.ramp, "time", "--ramp")
+        if ramp < 0.0:
+            raise UsageError(f"--ramp must not be negative; given `{wishes.ramp}`", "--ramp")
+        found, where = Deceleration.ramped(level, ramp), "--deceleration"
+    if found.largest(duration) == 0.0:
+        raise UsageError(f"{where}: the tank must be decelerated at some time within --duration", where)
+    if found.largest(duration) > LARGEST:
+        raise UsageError(f"{where}: must stay below {LARGEST:g} m/s^2, or the unit is another one", where)
+    return found
+
+
+def read_table(file: Path) -> list[tuple[float, float]]:
+    """Rows (s, m/s^2) of a CSV file with columns time_s and deceleration_m_s2; lines that begin with # are skipped.
+
+    Raises UsageError with file and line.
+    """
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise UsageError(f"cannot read {file}: {reason}", str(file)) from error
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
+    cells = [[cell.strip() for cell in row] for row in csv.reader(line for _, line in lines)]
+    if not cells or not set(COLUMNS) <= set(cells[0]):
+        found = ", ".join(cells[0]) if cells else "nothing"
+        raise UsageError(f"{file}: must have the columns {COLUMNS[0]} and {COLUMNS[1]}; given {found}", str(file))
+    places = [cells[0].index(column) for column in COLUMNS]
+    points: list[tuple[float, float]] = []
+    for (number, _), row in zip(lines[1:], cells[1:], strict=True):
+        try:
+            time, value = (float(row[place]) for place in places)
+        except (ValueError, IndexError):
+            time = value = math.nan
+        if not (math.isfinite(time) and math.isfinite(value)):
+            raise UsageError(
+                f"{file}:{number}: must hold two finite numbers; given `{','.join(row)}`", f"{file}:{number}"
+            )
+        if points and time < points[-1][0]:
+            raise UsageError(
+                f"{file}:{number}: times must not fall; {time:g} s follows {points[-1][0]:g} s", f"{file}:{number}"
+            )
+        points.append((time, value))
+    if not points:
+        raise UsageError(f"{file}: must hold at least one row of numbers below its head", str(file))
+    return points
+
+
+def _quantity(text: str | None, dimension: str, option: str) -> float:
+    try:
+        return parse_quantity(text, dimension)
+    except ValueRefused as refused:
+        raise UsageError(f"{option} {refused}", option) from refused
+
+
+def _positive(text: str, option: str) -> float:
+    value = _quantity(text, "time", option)
+    if value <= 0.0:
+        raise UsageError(f"{option} must be positive; given `{text}`", option)
+    return value
+
+
+def _announce() -> None:
+    """Say that this first time takes longer, when the loops have not been compiled yet."""
+    from slosh_cli.compiled import CACHE_FOLDER
+
+    if not any(CACHE_FOLDER.rglob("*excite*.nbc")):
+        note("Compiling the liquid, once: about 10 s. Later it starts at once.")
+
+
+def _room(scenario: "Scenario | TankScenario") -> float:
+    return scenario.tank.height * (1.0 - scenario.tank.fill)
+
+
+def _warnings(scenario: "Scenario | TankScenario", found: "Excitation") -> list[str]:
+    """What a reader must know before using the numbers."""
+    from slosh_cli.tank.comparison import impossible_fractions
+
+    tank = scenario.tank
+    if tank.liquid.model != "modal":
+        return []
+    warnings = list(impossible_fractions(tank))
+    room, depth = _room(scenario), tank.height * tank.fill
+    if found.max_surface > min(room, depth):
+        warnings.append(
+            f"the surface moves by {found.max_surface:.2f} m at the end walls, but there is {room:.2f} m of room above "
+            f"it and {depth:.2f} m of liquid below: outside the linear theory of the modal liquid; compare with "
+            "--set tank.liquid.model=shallow-water"
+        )
+    return warnings
+
+
+def _write(
+    scenario: "Scenario | TankScenario", found: "Excitation", answer: dict[str, Any], folder: Path
+) -> dict[str, Any]:
+    """Write table, history and figure together; returns where they lie."""
+    from slosh_cli.report.tank_figures import Heading, draw_excitation
+    from slosh_cli.results.channels import CHANNELS, Channel
+    from slosh_cli.results.files import staging
+    from slosh_cli.results.hdf5 import write_excitation
+    from slosh_cli.results.tables import write_table
+
+    columns = {
+        "force_N": (CHANNELS["liquid_force"], found.force),
+        "moment_N_m": (CHANNELS["liquid_moment"], found.moment),
+        "surface_front_m": (CHANNELS["surface_front"], found.surface_front),
+        "surface_rear_m": (CHANNELS["surface_rear"], found.surface_rear),
+    }
+    values = zip(found.time, *(column for _, column in columns.values()), strict=True)
+    rows = [dict(zip(("time_s", *columns), map(float, row), strict=True)) for row in values]
+    channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
+    channels |= dict(columns.values())
+    facts = {key: "\n".join(value) if isinstance(value, list) else value for key, value in answer.items()}
+    with staging(folder) as stage:
+        write_table(rows, stage / TABLE)
+        write_excitation(scenario, found.time, channels, facts, stage / HISTORY)
+        drawn = draw_excitation(
+            found, Heading("Tank under deceleration", _words(scenario, found)), _room(scenario), stage
+        )
+    return {
+        "table": str(folder / TABLE),
+        "history": str(folder / HISTORY),
+        "figures": [str(folder / file.name) for file in drawn],
+    }
+
+
+def _words(scenario: "Scenario | TankScenario", found: "Excitation") -> str:
+    tank = scenario.tank
+    return (
+        f"{scenario.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
+        f"liquid: {tank.liquid.model}, up to {found.largest_deceleration:.4g} m/s²"
+    )
+
+
+def _show(
+    scenario: "Scenario | TankScenario", found: "Excitation", warnings: Sequence[str], files: dict[str, Any]
+) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    number: Callable[[float, str], str] = lambda value, unit: f"{value:.5g} {unit}".rstrip()  # noqa: E731
+    table = Table.grid(padding=(0, 2))
+    table.title, table.title_justify, table.title_style = _words(scenario, found), "left", "bold"
+    normalised = found.normalised_force
+    for row in (
+        ("force / (m a), largest", number(float(normalised.max()), "")),
+        ("force / (m a), least", number(float(normalised.min()), "")),
+        ("force, largest", number(float(found.force.max()) / 1e3, "kN")),
+        ("moment about the bottom centre, largest", number(float(found.moment.max()) / 1e3, "kN m")),
+        ("surface rise at an end wall, largest", f"{found.max_surface:.3f} m (room: {_room(scenario):.2f} m)"),
+        ("mass error", f"{found.mass_error:.1e}"),
+        ("last change of the histories", f"{found.accuracy:.1e}"),
+    ):
+        table.add_row(*row)
+    alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in warnings]
+    show(table, *([""] if alarms else []), *alarms)
+    say(f"\n  table    {files['table']}\n  history  {files['history']}\n  figures  {', '.join(files['figures'])}")

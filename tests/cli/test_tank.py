@@ -1,0 +1,244 @@
+"""`slosh tank coefficients`, `excite` and `chart`."""
+
+import csv
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from stand_ins import PAPER, Outcome, Slosh
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.scenario import load_any_scenario
+
+HALF = PAPER.parent / "kolaei_half.yaml"
+COMPUTED = ("--set", "tank.coefficients=computed")
+
+
+@pytest.fixture(autouse=True)
+def _coarse_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slosh_cli.report.figures.RESOLUTION", 30)
+
+
+def answer(outcome: Outcome) -> dict:
+    assert outcome.code == ExitCode.DONE, outcome.err
+    return json.loads(outcome.out)
+
+
+def rows_of(file: Path) -> list[dict[str, str]]:
+    with file.open(encoding="utf-8") as table:
+        return list(csv.DictReader(table))
+
+
+def test_coefficients_have_the_keys_of_the_contract(slosh: Slosh, tmp_path: Path) -> None:
+    found = answer(slosh("tank", "coefficients", HALF, "--modes", 3, "--json"))
+    assert found["liquid_mass_kg"] == pytest.approx(12982.78, abs=0.01)
+    assert found["centroid_m"] == pytest.approx(1.2 * (1 - 4 / (3 * np.pi)))
+    assert [mode["n"] for mode in found["modes"]] == [1, 3, 5]
+    keys = ["n", "omega_rad_s", "lambda_1_kg", "lambda_02_kg_m", "mu_kg", "mass_fraction", "height_m"]
+    assert all(list(mode) == keys for mode in found["modes"] + found["given"])
+    first, given = found["modes"][0], found["given"][0]
+    assert first["omega_rad_s"] == pytest.approx(1.586020, rel=1e-6)
+    assert first["mass_fraction"] == pytest.approx(first["lambda_1_kg"] ** 2 / first["mu_kg"] / found["liquid_mass_kg"])
+    assert first["height_m"] == pytest.approx(first["lambda_02_kg_m"] / first["lambda_1_kg"])
+    assert given["omega_rad_s"] == 1.65
+    assert found["deviations_percent"][0]["omega_rad_s"] == pytest.approx(4.03, abs=0.01)
+    assert found["pitch_inertia_stokes_joukowski_kg_m2"] < found["pitch_inertia_frozen_kg_m2"]
+    assert found["accuracy"]["frequency_change"] < 1e-5
+    assert len(found["warnings"]) == 1
+    assert "0.8211" in found["warnings"][0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_coefficients_as_a_table_fit_the_terminal_and_warn(
+    slosh: Slosh, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    outcome = slosh("tank", "coefficients", PAPER)
+    assert outcome.code == ExitCode.DONE
+    assert "…" not in outcome.out
+    for text in (
+        "0.681815",
+        "0.69",
+        "+1.20",
+        "-121225",
+        "+13.07",
+        "407229",
+        "0.79366",
+        "0.93454",
+        "0.8634 m",
+        "warning",
+    ):
+        assert text in outcome.out
+    assert "45468.7 kg" in outcome.out
+
+
+def test_computed_coefficients_have_nothing_beside_them(slosh: Slosh) -> None:
+    found = answer(slosh("tank", "coefficients", HALF, *COMPUTED, "--json"))
+    assert (found["given"], found["deviations_percent"], found["warnings"]) == ([], [], [])
+
+
+def test_coefficients_draw_the_modes_where_a_folder_is_given(slosh: Slosh, tmp_path: Path) -> None:
+    found = answer(slosh("tank", "coefficients", HALF, "--modes", 2, "-o", "here", "--json"))
+    assert {file.name for file in (tmp_path / "here").iterdir()} == {
+        "coefficients.csv", "mode_1.png", "mode_1.svg", "mode_3.png", "mode_3.svg",
+    }  # fmt: skip
+    table = rows_of(Path(found["files"]["table"]))
+    assert [(row["source"], row["n"]) for row in table] == [("computed", "1"), ("computed", "3"), ("given", "1")]
+    assert float(table[0]["omega_rad_s"]) == found["modes"][0]["omega_rad_s"]
+    assert all(np.any(imread(tmp_path / "here" / f"mode_{n}.png")[..., :3] < 0.5) for n in (1, 3))
+    assert "Slosh mode n = 3" in (tmp_path / "here" / "mode_3.svg").read_text(encoding="utf-8")
+
+
+def test_a_tank_of_any_shape_is_drawn(slosh: Slosh, tmp_path: Path) -> None:
+    text = HALF.read_text(encoding="utf-8").split("  # The coefficients")[0]
+    polygon = text.replace("horizontal-cylinder", "polygon").replace(
+        "radius: 1.2 m", "points: [[-1, 0], [1, 0], [1.5, 1], [0.5, 1], [0.5, 2], [-0.5, 2], [-0.5, 1], [-1.5, 1]]"
+    )
+    (tmp_path / "bottle.yaml").write_text(polygon, encoding="utf-8")
+    assert slosh("tank", "coefficients", "bottle.yaml", "-o", "here").code == ExitCode.DONE
+    assert (tmp_path / "here" / "mode_1.svg").exists()
+
+
+def test_excite_writes_table_history_and_figure(slosh: Slosh, tmp_path: Path) -> None:
+    found = answer(
+        slosh("tank", "excite", HALF, "--deceleration", "0.2 g", "--duration", "10 s", "-o", "here", "--json")
+    )
+    names = {"excite.csv", "excite.h5", "excite.png", "excite.svg"}
+    assert {file.name for file in (tmp_path / "here").iterdir()} == names
+    assert found["max_normalised_force"] == pytest.approx(1.82, abs=0.005)
+    assert found["min_normalised_force"] == pytest.approx(0.18, abs=0.005)
+    assert found["mass_error"] == 0.0
+    table = rows_of(tmp_path / "here" / "excite.csv")
+    assert list(table[0]) == ["time_s", "force_N", "moment_N_m", "surface_front_m", "surface_rear_m"]
+    assert [float(row["time_s"]) for row in table[:3]] == pytest.approx([0.0, 0.01, 0.02])
+    assert float(table[-1]["time_s"]) == 10.0
+    assert (
+        max(float(row["force_N"]) for row in table) / (found["liquid_mass_kg"] * 1.962) == found["max_normalised_force"]
+    )
+    assert max(float(row["moment_N_m"]) for row in table) == found["max_moment_N_m"]
+    assert max(float(row["surface_front_m"]) for row in table) == found["max_surface_m"]
+
+
+def test_the_history_of_an_excitation_says_what_it_is(slosh: Slosh, tmp_path: Path) -> None:
+    answer(slosh("tank", "excite", HALF, "--deceleration", "1 m/s^2", "--duration", "2 s", "-o", "here", "--json"))
+    with h5py.File(tmp_path / "here" / "excite.h5") as file:
+        assert file["liquid_force"].attrs["units"] == "N"
+        assert file["deceleration"][0] == 1.0
+        assert file["time"].shape == file["surface_rear"].shape == (201,)
+        assert file.attrs["program"] == "slosh"
+        assert file.attrs["max_normalised_force"] > 1.0
+        (tmp_path / "again.yaml").write_bytes(file["scenario"][()])
+    assert load_any_scenario(tmp_path / "again.yaml") == load_any_scenario(HALF)
+    outcome = slosh("plot", "here/excite.h5")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "not the history of a slosh run" in outcome.err
+
+
+def test_the_ramp_and_the_liquid_are_the_users_choice(slosh: Slosh) -> None:
+    ramp = ("--deceleration", "0.2 g", "--ramp", "2 s", "--json")
+    assert answer(slosh("tank", "excite", HALF, *ramp, *COMPUTED))["max_normalised_force"] == pytest.approx(
+        1.47, abs=0.005
+    )
+    found = answer(slosh("tank", "excite", HALF, *ramp, "--set", "tank.liquid.model=rigid"))
+    assert (found["max_normalised_force"], found["max_surface_m"]) == (pytest.approx(1.0), 0.0)
+    found = answer(slosh("tank", "excite", PAPER, *ramp, "--set", "tank.liquid.model=shallow-water"))
+    assert 0.0 < found["mass_error"] < 1e-12
+    assert found["max_surface_m"] <= found["surface_limit_m"] * (1 + 1e-12)
+
+
+def test_without_a_folder_the_files_go_where_those_of_a_run_go(slosh: Slosh, tmp_path: Path) -> None:
+    assert slosh("tank", "excite", HALF, "--deceleration", "0.1 g", "--duration", "1 s").code == ExitCode.DONE
+    assert (tmp_path / "outputs" / "kolaei-half" / "excite.csv").exists()
+
+
+def test_a_modal_liquid_through_the_roof_is_warned_of(slosh: Slosh) -> None:
+    found = answer(slosh("tank", "excite", HALF, "--deceleration", "0.5 g", "--duration", "5 s", "--json"))
+    assert any("outside the linear theory" in warning for warning in found["warnings"])
+
+
+def test_a_table_is_linear_in_between(slosh: Slosh, tmp_path: Path) -> None:
+    (tmp_path / "brake.csv").write_text("# a ramp\ntime_s,deceleration_m_s2\n0,0\n2,1.962\n\n", encoding="utf-8")
+    by_table = answer(slosh("tank", "excite", HALF, "--table", "brake.csv", "--json"))
+    by_ramp = answer(slosh("tank", "excite", HALF, "--deceleration", "0.2 g", "--ramp", "2 s", "--json"))
+    assert by_table["max_normalised_force"] == pytest.approx(by_ramp["max_normalised_force"], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("time_s,deceleration_m_s2\n0,0\n1,x\n", "brake.csv:3: must hold two finite numbers"),
+        ("time_s,deceleration_m_s2\n0,0\n1\n", "brake.csv:3: must hold two finite numbers"),
+        ("time_s,deceleration_m_s2\n0,0\n1,nan\n", "brake.csv:3: must hold two finite numbers"),
+        ("time_s,deceleration_m_s2\n0,0\n2,1\n1,1\n", "brake.csv:4: times must not fall"),
+        ("time,a\n0,0\n", "must have the columns time_s and deceleration_m_s2"),
+        ("", "must have the columns"),
+        ("time_s,deceleration_m_s2\n", "at least one row"),
+        ("time_s,deceleration_m_s2\n0,0\n", "must be decelerated"),
+    ],
+)
+def test_a_table_that_is_none_is_named_with_its_line(slosh: Slosh, tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "brake.csv").write_text(text, encoding="utf-8")
+    outcome = slosh("tank", "excite", HALF, "--table", "brake.csv")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert said in outcome.err
+    assert [file.name for file in tmp_path.iterdir()] == ["brake.csv"]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ((), "--deceleration '0.2 g', or --table"),
+        (("--deceleration", "1 g", "--table", "x.csv"), "--deceleration '0.2 g', or --table"),
+        (("--deceleration", "0.2"), "`0.2` without a unit"),
+        (("--deceleration", "0.2 m/s"), "which is a speed"),
+        (("--deceleration", "0 g"), "must be decelerated"),
+        (("--deceleration", "1e9 g"), "must stay below"),
+        (("--deceleration", "1 g", "--ramp", "-1 s"), "--ramp must not be negative"),
+        (("--deceleration", "1 g", "--duration", "0 s"), "--duration must be positive"),
+        (("--deceleration", "1 g", "--interval", "1 us", "--duration", "40 s"), "at most 1000000 rows"),
+        (("--table", "nowhere.csv"), "cannot read nowhere.csv"),
+        (("--ramp", "1 s", "--table", "nowhere.csv"), "--ramp goes with --deceleration"),
+    ],
+)
+def test_wishes_that_cannot_be_met(slosh: Slosh, options: tuple[str, ...], said: str) -> None:
+    outcome = slosh("tank", "excite", HALF, *options, "--json")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert said in json.loads(outcome.out)["error"]["message"]
+
+
+def test_a_chart_has_a_row_per_filling_and_mode(slosh: Slosh, tmp_path: Path) -> None:
+    found = answer(slosh("tank", "chart", HALF, "--fills", "0.3:0.7:0.2", "--modes", 2, "-o", "here", "--json"))
+    table = rows_of(tmp_path / "here" / "fill_chart.csv")
+    assert [(float(row["fill"]), row["n"]) for row in table] == [(f, n) for f in (0.3, 0.5, 0.7) for n in ("1", "3")]
+    assert float(table[2]["omega_rad_s"]) == pytest.approx(1.58602, rel=1e-5)
+    assert found["rows"][2]["mass_fraction"] == pytest.approx(0.738717, rel=1e-5)
+    assert {file.name for file in (tmp_path / "here").iterdir()} == {
+        "fill_chart.csv",
+        "fill_chart.png",
+        "fill_chart.svg",
+    }
+
+
+@pytest.mark.parametrize("fills", ["0.01", "0.5,1.2", "half", "0.1:0.9", "0.5 m", ""])
+def test_fillings_that_are_none(slosh: Slosh, fills: str) -> None:
+    outcome = slosh("tank", "chart", HALF, "--fills", fills)
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "--fills" in outcome.err
+
+
+def test_every_axis_of_the_figures_has_a_unit(slosh: Slosh, monkeypatch: pytest.MonkeyPatch) -> None:
+    from slosh_cli.report import tank_figures
+
+    drawn = []
+    monkeypatch.setattr(tank_figures, "_save", lambda figure, *_: drawn.append(figure) or [])
+    slosh("tank", "coefficients", HALF, "-o", "here")
+    slosh("tank", "excite", HALF, "--deceleration", "1 m/s^2", "--duration", "2 s", "-o", "here")
+    slosh("tank", "chart", HALF, "--fills", "0.3,0.5", "-o", "here")
+    assert len(drawn) == 3
+    for figure in drawn:
+        for axes in figure.axes:
+            assert axes.get_ylabel(), axes.get_title()
+        assert figure.axes[-1].get_xlabel() or figure.axes[-1].get_ylabel().startswith("potential")
