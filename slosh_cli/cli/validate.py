@@ -44,9 +44,9 @@ def validate(
         ),
     ] = None,
 ) -> ExitCode:
-    """Hold the program against published numbers, closed forms and other codes.
+    """Check the program against published and exact results.
 
-    Exit code 1 when a case falls outside its stated tolerance.
+    Closed forms, quadratures, published numbers, other codes. Exit code 1 when a case misses its stated tolerance.
     """
     from slosh_cli.validation.registry import chosen, left_out
 

@@ -17,7 +17,8 @@ LINEAR_RMS = {0.6: 0.218, 1.5: 0.363}
 
 
 def reference(deceleration):
-    return np.genfromtxt(DATA / f"interfoam_{deceleration}.csv", delimiter=",", names=True)
+    lines = (DATA / f"interfoam_{deceleration}.csv").read_text(encoding="utf-8").splitlines()
+    return np.genfromtxt([line for line in lines if not line.startswith("#")], delimiter=",", names=True)
 
 
 def rms(values):

@@ -54,7 +54,7 @@ def test_dry_bed_and_full_pipe_survive_a_1_g_step(name, fill):
         losses.append(work - (energies[-1] - energies[-2]))
         assert tank.area.sum() == pytest.approx(mass, rel=1e-12)
     largest = max(energies)
-    assert min(losses) > -3e-4 * largest
+    assert min(losses) > -1e-3 * largest
     assert sum(losses) > 0.0
     if fill == 0.1:
         assert tank.area.min() < 1e-3 * section.area(section.height)
