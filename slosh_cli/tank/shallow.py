@@ -121,7 +121,8 @@ def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
             wet = wet and area[i + 1] > dry
             surface_a = depth[i + 1] - depth[i] + tilt
             speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
-        slope_depth[i] = (_limited(surface_b, surface_a) if wet else 0.0) - tilt
+        slope = (_limited(surface_b, surface_a) if wet else 0.0) - tilt
+        slope_depth[i] = min(max(slope, -2.0 * depth[i]), 2.0 * depth[i])  # neither end of a cell lies below the bed
         slope_speed[i] = _limited(speed_b, speed_a) if wet else 0.0
 
 
@@ -255,7 +256,8 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
     second_area, second_flow = work[8], work[9]
     remaining = duration
     while remaining > 0.0:
-        limit = COURANT * liquid.spacing / largest_speed(liquid, area, flow, depth)
+        reach, speed = COURANT * liquid.spacing, largest_speed(liquid, area, flow, depth)
+        limit = 2.0 * reach / (speed + math.sqrt(speed * speed + 4.0 * abs(acceleration) * reach))
         if not limit > 1e-7:
             return False
         step = remaining / math.ceil(remaining / limit)

@@ -80,4 +80,5 @@ def _shallow(tank: Any, deceleration: float, steps: int) -> tuple[Array, Array, 
     work, pushes = np.zeros((shallow.WORK_ROWS, cells + 1)), np.zeros((steps, 4))
     for push in pushes:
         evolve(liquid, area, flow, deep, -deceleration, STEP, work, push)
-    return (np.arange(steps) + 0.5) * STEP, pushes[:, 0] / STEP, pushes[:, 1] / STEP
+    middles = np.asarray((np.arange(steps) + 0.5) * STEP, dtype=np.float64)
+    return middles, pushes[:, 0] / STEP, pushes[:, 1] / STEP
