@@ -4,13 +4,14 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.installed
 
-.PHONY: help run test test-all lint types format reference clean
+.PHONY: help run test test-all lint types format docs reference clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
 	@echo "make test      the tests (a few minutes; the first call also sets up .venv)"
 	@echo "make test-all  the tests with the slow studies"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
+	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
@@ -38,6 +39,10 @@ types: $(READY)
 format: $(READY)
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix
+
+docs: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[docs]'
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build -f .mkdocs.yml
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code

@@ -1,7 +1,8 @@
 """What the figures of a study show: which axis lies along the bottom, which makes panels, which makes figures."""
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from slosh_cli.scenario.schema_run import ADHESIONS
 from slosh_cli.study.axis import Axis
@@ -10,6 +11,8 @@ from slosh_cli.study.table import column_of
 
 if TYPE_CHECKING:
     from slosh_cli.report.study_figures import Mark, Page
+
+T = TypeVar("T")
 
 NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
 _UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
@@ -45,11 +48,8 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
     if not varied:
         return []
     along = next((axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1])
-    others = [axis for axis in varied if axis is not along]
-    beside = next(
-        (axis for axis in sorted(others, key=lambda axis: axis.key != SPEED) if len(axis.values) <= MOST_PANELS), None
-    )
-    apart = [axis for axis in others if axis is not beside]
+    others = sorted((axis for axis in varied if axis is not along), key=lambda axis: axis.key != SPEED)
+    beside, apart = (others[0] if others else None), others[1:]
     found: dict[str, dict[str, Panel]] = {}
     ticks: dict[Any, int] = {}
     for row in rows:
@@ -64,9 +64,17 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
     best = "most effective torque" if along.key == TORQUE else "shortest"
     label = f"{name_of(along)} / {unit}" if unit else name_of(along)
     return [
-        Page("Braking distance", _conditions(study, page), label, unit, best, list(panels.values()), list(ticks))
+        Page("Braking distance", _conditions(study, page), label, unit, best, together, list(ticks))
         for page, panels in found.items()
+        for together in _shared_out(list(panels.values()), MOST_PANELS)
     ]
+
+
+def _shared_out(panels: Sequence[T], most: int) -> Iterator[Sequence[T]]:
+    """`panels` on as few pages of at most `most` as there must be, about as many on each."""
+    count = math.ceil(len(panels) / most)
+    for number in range(count):
+        yield panels[number * len(panels) // count : (number + 1) * len(panels) // count]
 
 
 def _panel_title(beside: Axis | None, row: Mapping[str, Any]) -> str:

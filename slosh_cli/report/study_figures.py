@@ -28,6 +28,8 @@ from slosh_cli.results.result import Status
 NAME: Final = "braking_distance"
 SOLID: Final = "rigid"
 LINEAR: Final = "modal"
+WIDTH: Final = 10.4
+"""Width of a figure of two panels in inches; a wider one has no more pixels across."""
 MOST_PANELS: Final = 6
 MOST_PAGES: Final = 12
 
@@ -99,7 +101,7 @@ def braking_distance(page: Page) -> Figure:
     columns = min(len(page.panels), 3 if len(page.panels) != 4 else 2)
     lines = math.ceil(len(page.panels) / columns)
     width, height = max(5.2 * columns, 7.0), 4.6 * lines + 1.75
-    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION)
+    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, WIDTH / width))
     figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
     words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
     figure.text(0.014, 1.0 - 0.5 / height, words, fontsize=12.5, color=MUTED, va="top", parse_math=False)

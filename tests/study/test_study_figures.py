@@ -169,6 +169,19 @@ def test_what_varies_beside_speed_and_torque_makes_figures() -> None:
     assert [panels for _, _, panels in found] == [["80 km/h", "160 km/h"]] * 2
 
 
+def test_many_speeds_share_as_few_figures_as_there_must_be() -> None:
+    found = shown(Wishes(speeds="10:80:10", torques="5,10"))
+    assert [panels for _, _, panels in found] == [
+        ["10 km/h", "20 km/h", "30 km/h", "40 km/h"], ["50 km/h", "60 km/h", "70 km/h", "80 km/h"],
+    ]  # fmt: skip
+
+
+def test_a_wide_figure_has_no_more_pixels_across(tmp_path: Path) -> None:
+    six = page(panels=[Panel(f"{speed} km/h", page().panels[0].curves) for speed in range(6)])
+    (png, _) = draw_study([six], tmp_path)
+    assert Image.open(png).size[0] == pytest.approx(2080, abs=2)
+
+
 def test_without_torque_and_speed_the_last_key_lies_along_the_bottom() -> None:
     found = shown(Wishes(vary=["contact.adhesion=dry,wet", "wagon.pivot_spacing=10:12:1 m"]))
     assert [(label, panels) for _, label, panels in found] == [

@@ -88,6 +88,19 @@ def test_the_force_is_within_a_millionth_of_the_exact_one(course, tank):
     assert found.mass_error == 0.0
 
 
+def test_steps_are_halved_until_the_history_settles(monkeypatch):
+    """However coarse the first steps."""
+    fine = excite(shipped("kolaei_half"), COURSES["ramp"], 10.0, 1.0)
+    monkeypatch.setattr("slosh_cli.solver.excite.FIRST_PHASE", 2.0)
+    coarse = excite(shipped("kolaei_half"), COURSES["ramp"], 10.0, 1.0)
+    assert 0.0 < coarse.accuracy < 1e-7
+    assert np.abs(coarse.force - fine.force).max() < 1e-7 * np.abs(fine.force).max()
+    monkeypatch.setattr("slosh_cli.solver.excite.MOST_STEPS", 100)
+    rough = excite(shipped("kolaei_half"), COURSES["ramp"], 10.0, 1.0)
+    assert rough.accuracy > 1e-7
+    assert 10.0 * rough.accuracy > np.abs(rough.force - fine.force).max() / np.abs(fine.force).max()
+
+
 @pytest.mark.parametrize(
     ("name", "overrides", "ramp", "peak"),
     [
