@@ -20,6 +20,7 @@ from matplotlib.tri import Triangulation
 from slosh_cli.report import figures
 from slosh_cli.report.figures import FORMATS, FRONT, INK, MUTED, REAR, STYLE
 from slosh_cli.results.files import replacing
+from slosh_cli.tank.mesh import Floats
 from slosh_cli.tank.section import TankGeometry, section_of
 
 if TYPE_CHECKING:
@@ -161,10 +162,12 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
     lift = depth + SURFACE_SHARE * height * shape.surface_rise
     axes.plot(shape.surface_y, lift, color="#c1440e", linewidth=2.2, label="risen surface (not to scale)")
     axes.plot(shape.surface_y[[0, -1]], [depth, depth], color=MUTED, linewidth=1.2, linestyle=(0, (4, 3)))
-    for side in _outline(tank, height):
-        axes.plot(*side, color=INK, linewidth=2.2)
+    y, z = _outline(tank, height)
+    axes.plot(y, z, color=INK, linewidth=2.2)
+    room = 0.04 * height
+    axes.set_xlim(float(y.min()) - room, float(y.max()) + room)
+    axes.set_ylim(-room, max(height, float(lift.max())) + room)
     axes.set_aspect("equal")
-    axes.margins(0.04)
     axes.grid(visible=False)
     axes.set_xlabel("y / m")
     axes.set_ylabel("z above the bottom / m")
@@ -172,18 +175,17 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, -0.36), borderaxespad=0.0)
 
 
-def _outline(tank: TankGeometry, height: float) -> list[tuple[Any, Any]]:
-    """The wall as lines (y, z): a polygon's own corners, otherwise the width at many depths, on both sides."""
+def _outline(tank: TankGeometry, height: float) -> tuple[Floats, Floats]:
+    """The wall as a line (y, z): a polygon's own corners, otherwise the width at many depths, on both sides."""
     points = getattr(tank, "points", None)
     if points is not None:
-        y, z = np.array([*points, points[0]], dtype=np.float64).T
-        return [(y, z)]
+        corners = np.array([*points, points[0]], dtype=np.float64)
+        return corners[:, 0], corners[:, 1]
     z = 0.5 * height * (1.0 - np.cos(np.linspace(0.0, math.pi, 200)))
     section = section_of(tank)
     inside = np.clip(z, 1e-9 * height, (1.0 - 1e-9) * height)
     half = np.array([0.5 * section.surface_width(float(level)) for level in inside])
-    y = np.concatenate([half, -half[::-1], half[:1]])
-    return [(y, np.concatenate([z, z[::-1], z[:1]]))]
+    return np.concatenate([half, -half[::-1], half[:1]]), np.concatenate([z, z[::-1], z[:1]])
 
 
 def _headed(heading: Heading, size: tuple[float, float], head: float = 0.95) -> Figure:

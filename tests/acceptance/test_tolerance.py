@@ -55,6 +55,8 @@ QUICK = [
     ("paper_160_solid", "wet", 10.0),
     ("paper_80", "wet", 25.0),
     ("paper_160", "dry", 20.0),  # overturns
+    ("paper_80", "dry", 15.0),  # wheels lift and land, gently
+    ("paper_80_solid", "dry", 60.0),  # and hard
 ]
 
 
