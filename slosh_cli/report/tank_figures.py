@@ -106,6 +106,7 @@ def mode_figure(mode: LongitudinalMode, tank: TankGeometry, heading: Heading) ->
     across, along = figure.subplots(1, 2, width_ratios=[1.0, 1.35])
     section = section_of(tank)
     _draw_section(across, mode, tank, section.height)
+    figure.legend(*across.get_legend_handles_labels(), loc="outside lower left")
     x = np.linspace(-0.5, 0.5, 400) * tank.length
     rise = np.cos(mode.n * math.pi * (x / tank.length + 0.5))
     rise *= math.copysign(1.0, rise[-1])  # drawn with the surface up in front
@@ -172,7 +173,6 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
     axes.set_xlabel("y / m")
     axes.set_ylabel("z above the bottom / m")
     axes.set_title("cross-section at an end wall", fontsize=13, loc="left", color=INK)
-    axes.legend(loc="lower left", bbox_to_anchor=(-0.02, -0.36), borderaxespad=0.0)
 
 
 def _outline(tank: TankGeometry, height: float) -> tuple[Floats, Floats]:

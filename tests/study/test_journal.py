@@ -113,6 +113,8 @@ def test_removing_a_journal_leaves_nothing_of_it(path: Path) -> None:
     journal.add([outcome("a")])
     assert len(list(path.parent.iterdir())) == 3
     journal._file.close()
+    path.with_name("journal.sqlite-wal").write_text("the log of a killed process")
+    path.with_name("journal.sqlite-shm").write_text("and its index")
     remove(path)
     remove(path)
     assert list(path.parent.iterdir()) == []

@@ -2,6 +2,7 @@
 
 import threading
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from slosh_cli.scenario import Scenario
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.journal import JOURNAL, Journal
 from slosh_cli.study.outcome import solve
-from slosh_cli.study.plan import Study
+from slosh_cli.study.plan import Stop, Study
 from slosh_cli.study.runner import answer, history_file, plan, run_study
 from slosh_cli.study.table import rows
 from slosh_cli.study.threads import Threads
@@ -130,7 +131,7 @@ def test_stops_run_at_the_same_time_and_only_a_few_are_in_hand(solver: QuickSolv
     study = build(Wishes(speeds="20:60:1", torques="5", liquids="rigid"))
     ahead = []
 
-    def stops():  # type: ignore[no-untyped-def]
+    def stops() -> Iterator[Stop]:
         nonlocal handed
         for index in range(study.size):
             handed += 1
@@ -158,6 +159,23 @@ def test_an_interrupted_study_keeps_what_is_finished_and_goes_on(solver: QuickSo
     assert len(table(study, tmp_path)) == done
     solver.answer = solver.stop
     assert carry_out(study, tmp_path) == (done, 16 - done)
+
+
+def test_after_an_interrupt_no_further_stop_is_made_ready(solver: QuickSolver) -> None:
+    cancel, made = threading.Event(), 0
+    study = build(Wishes(speeds="20:60:1", torques="5"))
+
+    def stops() -> Iterator[Stop]:
+        nonlocal made
+        for index in range(study.size):
+            made += 1
+            yield study.stop(index)
+
+    found = Threads(2).outcomes(stops(), study.size, cancel)
+    next(found)
+    cancel.set()
+    assert sum(len(batch) for batch in found) <= 6
+    assert made <= 8
 
 
 def test_a_journal_that_cannot_be_written_ends_the_study_at_once(
