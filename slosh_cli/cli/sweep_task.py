@@ -72,7 +72,7 @@ def _compute(task: Task, planned: "Plan", journal: "Journal") -> bool:
     with task.workers(len(planned.open)) as workers:
         _prepare(task, planned, journal)
         note(f"{len(planned.open)} to run on {workers.words}")
-        threading.Thread(target=_import_ahead, daemon=True).start()
+        threading.Thread(target=_import_ahead).start()
         with StopsProgress() as progress, _interruptible(cancel) as interrupted:
             run_study(task.study, planned, journal, workers, task.folder, cancel=cancel, report=progress)
     return interrupted.is_set()

@@ -185,9 +185,10 @@ def test_a_journal_that_cannot_be_written_ends_the_study_at_once(
         raise FileError("cannot write the journal: disk full")
 
     monkeypatch.setattr(Journal, "add", full)
-    before = threading.active_count()
+    before, cancel = threading.active_count(), threading.Event()
     with pytest.raises(FileError, match="disk full"):
-        carry_out(build(STUDY), tmp_path)
+        carry_out(build(STUDY), tmp_path, cancel=cancel)
+    assert cancel.is_set()  # what was in hand was told to end
     assert len(solver.scenarios) < 16
     assert threading.active_count() == before
 
