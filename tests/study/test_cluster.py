@@ -267,6 +267,20 @@ def test_futures_that_the_scheduler_lost_end_the_study(connected: Any) -> None:
         outcomes(build(STUDY), workers)
 
 
+def test_a_lost_connection_ends_the_study_though_no_future_says_so(
+    connected: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Pending(Future):
+        def add_done_callback(self, call: Any) -> None:
+            """It never ends."""
+
+    monkeypatch.setattr(cluster, "_POLL_SECONDS", 0.01)
+    workers, client = connected(lambda *_: Pending())
+    monkeypatch.setattr(client, "status", "closed", raising=False)
+    with pytest.raises(ClusterError, match="lost the Dask scheduler"):
+        outcomes(build(STUDY), workers)
+
+
 def test_both_ends_share_program_and_result_version() -> None:
     assert this_version().startswith("slosh ")
     assert "results 1" in this_version()

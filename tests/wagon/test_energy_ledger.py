@@ -5,6 +5,9 @@ import pytest
 from plain_lagrangian import elongations, half_full_cylinder, plain_matrices
 from test_equations_of_motion import RADIUS, STOP, displacements, of_wheels
 
+from slosh_cli.solver.setup import problem
+from slosh_cli.track.moving import rail_ledger
+
 LOST = ("brake", "creep", "suspension", "foundation", "resistance", "slosh_damping")
 STORED = ("kinetic", "elastic", "slosh")
 
@@ -105,6 +108,27 @@ def test_kinetic_energy_is_that_of_the_recorded_speeds(run, rates):
     assert calm.mean() > 0.9
     gap = np.abs(run.channels["energy_kinetic"] - kinetic)[calm]
     assert gap.max() < 5e-6 * initial_kinetic(run)
+
+
+def test_elastic_energy_at_the_start_is_of_springs_contacts_and_rail(run):
+    """`2/5 N approach` in every contact; the rail's share by its kernel, which has a test of its own."""
+    stop, q = problem(run.scenario), displacements(run)[:, :1]
+    _, rail, _ = rail_ledger(stop.model.rail, stop.start.rail, 0 * stop.start.rail, run.initial_speed_m_s)
+    springs = sum(unit.stiffness * length**2 for unit, length in elongations_of(run, q))[0]
+    approach = (of_wheels(run, "rail_deflection") - of_wheels(run, "heave"))[:, 0]
+    contacts = 2 * 0.4 * of_wheels(run, "normal_force")[:, 0] @ approach
+    assert run.channels["energy_elastic"][0] == pytest.approx(springs + contacts + 2 * rail, rel=1e-9)
+
+
+def test_potential_energy_at_the_end_is_of_weights_tilt_and_modes(run):
+    """At a step's end, where nothing is interpolated, to a thousandth of a joule: the load's tilt is a few."""
+    load, q = half_full_cylinder(run.scenario), displacements(run)[:, -1]
+    plain = plain_matrices(run.scenario, load)
+    springs = sum(unit.stiffness * length**2 for unit, length in elongations_of(run, q))
+    expected = q @ plain.stiffness @ q - 2 * plain.weight @ q - springs
+    tilt = load.mass * 9.81 * load.centre * q[2] ** 2 / 2
+    assert run.energy["slosh"] == pytest.approx(expected, abs=1e-3)
+    assert tilt > 0.1
 
 
 def test_elastic_and_potential_energy_are_those_of_the_recorded_places(run):
