@@ -21,6 +21,7 @@ NAMES: Final = (
     "moving-load-damped",
     "critical-speed",
     "mem-vs-fem",
+    "interfoam",
     "hertz",
     "polach",
     "point-mass",

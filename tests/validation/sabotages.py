@@ -41,6 +41,14 @@ STEADY = ("track.mem", "steady_matrix")
 MODE = ("tank.longitudinal", "longitudinal_mode")
 
 SABOTAGES: dict[str, Sabotage] = {
+    "interfoam_pressure": edit(
+        "interfoam",
+        "tank.section_table",
+        "section_table",
+        "=depth * area - first",
+        "=0.8 * (depth * area - first)",
+        "force",
+    ),
     "moving_load_tension": edit(
         "moving-load", *STEADY, "rail.mass * speed**2", "2 * rail.mass * speed**2", "deflection"
     ),
