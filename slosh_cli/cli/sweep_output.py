@@ -23,6 +23,7 @@ _EXAMPLES: Final = 4
 """Stops named in a group of failures."""
 _FEWEST: Final = 3
 """Torques from which on the most effective one is worth a word."""
+_SHORT: Final[Mapping[str, str]] = {SPEED: "v0", TORQUE: "torque"}
 _NUMBER: Final = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", re.IGNORECASE)
 
 
@@ -38,16 +39,25 @@ def _span(axis: Axis) -> str:
     return f"{axis.values[0]} to {axis.values[-1]} ({len(axis.values)} values)"
 
 
-def show_study(study: Study, rows: Iterable[Row], verdicts: Sequence["Verdict"]) -> None:
-    """Print the table, the most effective torques, what became of the paper's claims and the failures, to stdout."""
+def show_study(study: Study, rows: Iterable[Row]) -> None:
+    """Print the table and the most effective torques, to stdout."""
     rows = list(rows) if _lines(study) <= MOST_LINES else []
     if rows:
         show(_table(study, rows))
         say(_legend(rows))
         for line in _best_lines(study, rows):
             say(line)
-    for verdict in verdicts:
-        say(f"\n{verdict.claim}: {verdict.finding}\n  the paper: {verdict.text}\n  here: {verdict.evidence}")
+
+
+def claim_text(verdicts: Mapping[str, Sequence["Verdict"]]) -> str:
+    """What became of the paper's claims, by model of the liquid; empty where there is nothing to tell."""
+    lines = []
+    for model, found in verdicts.items():
+        of_model = f" ({model})" if len(verdicts) > 1 else ""
+        for verdict in found:
+            lines.append(f"\n{verdict.claim}{of_model}: {verdict.finding}")
+            lines.append(f"  the paper: {verdict.text}\n  here: {verdict.evidence}")
+    return "\n".join(lines)
 
 
 def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
@@ -91,13 +101,11 @@ def _table(study: Study, rows: Sequence[Row]) -> "Table":
     liquids = [model for model in models if model != SOLID]
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     table.title, table.title_justify, table.title_style = f"{study.name}: braking distance", "left", "bold"
-    for axis in axes:
-        unit = unit_of(axis)
-        table.add_column(f"{name_of(axis)} / {unit}" if unit else name_of(axis), justify="right", max_width=16)
-    for model in models:
-        table.add_column(f"{model} / m", justify="right")
-    for model in liquids if SOLID in models else []:
-        table.add_column("ratio" if len(liquids) == 1 else f"{model} / {SOLID}", justify="right")
+    heads = [(_SHORT.get(axis.key) or name_of(axis), unit_of(axis)) for axis in axes]
+    heads += [(model, "m") for model in models]
+    heads += [(model, f"/ {SOLID}") for model in liquids if SOLID in models]
+    for name, unit in heads:
+        table.add_column(f"{name}\n{unit}", justify="right", no_wrap=True)
     best = _best(rows, _curve_of(study))
     for _, group in groupby(rows, key=lambda row: tuple(text_of(axis, row) for axis in axes)):
         point = {str(row["liquid"]): row for row in group}

@@ -129,7 +129,7 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 
 def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
-    from slosh_cli.cli.sweep_output import failure_lines, show_study
+    from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study
     from slosh_cli.study.runner import answer
     from slosh_cli.study.table import TABLE, columns, rows, write_study_table
 
@@ -144,19 +144,19 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
         note(f"{written} of {study.size} stops are finished and kept in {task.folder}; {again} goes on from there.")
         raise KeyboardInterrupt
     figures = _draw(task, found())
-    verdicts = _verdicts(task, found())
+    claims = claim_text(_verdicts(task, found()))
     failures = failure_lines(study, found())
     failed = sum(row["status"] != "stopped" for row in found())
     if task.as_json:
         _say_answer(task, written - failed, failed, planned.reused, table, figures)
+        if claims:
+            note(claims)
     else:
-        show_study(study, found(), verdicts)
+        show_study(study, found())
+        if claims:
+            say(claims)
         say("\n" + "\n".join([f"  table    {table}", *(f"  figure   {figure}" for figure in figures)]))
         say(f"{written} stops in {time.perf_counter() - task.began:.1f} s, {planned.reused} of them from the journal")
-    tell = note if task.as_json else say
-    if task.as_json:
-        for verdict in verdicts:
-            tell(f"{verdict.claim}: {verdict.finding}. {verdict.evidence}")
     if failed:
         complain(f"{failed} of {written} stops ended without an answer:\n" + "\n".join(failures))
     return ExitCode.NO_ANSWER if failed else ExitCode.DONE
@@ -175,12 +175,17 @@ def _draw(task: Task, rows: Iterator[dict[str, Any]]) -> list[Path]:
     return draw_study(drawn[:MOST_PAGES], task.folder)
 
 
-def _verdicts(task: Task, rows: Iterator[dict[str, Any]]) -> "list[Verdict]":
-    """What the paper says of its Figure 3, where the study is that figure."""
+def _verdicts(task: Task, rows: Iterator[dict[str, Any]]) -> "dict[str, list[Verdict]]":
+    """What the paper says of its Figure 3 by model of the liquid, where the study is that figure."""
     from slosh_cli.study.build import paper_wagon
     from slosh_cli.study.claims import applies, verdicts
+    from slosh_cli.study.plan import LIQUID, SOLID
 
-    return verdicts(rows) if applies(task.study, paper_wagon()) else []
+    if not applies(task.study, paper_wagon()):
+        return {}
+    models = next(axis.values for axis in task.study.axes if axis.key == LIQUID)
+    found = list(rows)
+    return {model: verdicts(found, model) for model in models if model != SOLID}
 
 
 def _say_answer(task: Task, done: int, failed: int, reused: int, table: Path | None, figures: list[Path]) -> None:

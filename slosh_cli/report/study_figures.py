@@ -7,6 +7,7 @@ it. A stop outside linear theory has a hollow marker and hangs on a dotted line.
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -26,6 +27,7 @@ from slosh_cli.results.files import replacing
 from slosh_cli.results.result import Status
 
 NAME: Final = "braking_distance"
+_OURS: Final = re.compile(rf"{NAME}(?:_[0-9]+)?\.(?:png|svg)")
 SOLID: Final = "rigid"
 LINEAR: Final = "modal"
 WIDTH: Final = 10.4
@@ -81,7 +83,8 @@ class Page:
 def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
     """Draw one figure per page into `folder`, `braking_distance` and a number where there are several.
 
-    Returns the files. Each appears whole or not at all. Raises FileError when one cannot be written.
+    Returns the files. Each appears whole or not at all; those of an earlier study that had more are removed then.
+    Raises FileError when one cannot be written.
     """
     files = []
     with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
@@ -93,6 +96,9 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
                 with replacing(file) as temporary:
                     figure.savefig(temporary, format=suffix, metadata={"Date": None} if suffix == "svg" else None)
                 files.append(file)
+    for file in folder.iterdir():
+        if file not in files and _OURS.fullmatch(file.name):
+            file.unlink(missing_ok=True)
     return files
 
 

@@ -10,6 +10,8 @@ from typing import Any, Final
 from slosh_cli.scenario import Scenario, replace
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
+LINEAR: Final = "modal"
+"""The model of the liquid that the paper has."""
 SPEEDS: Final = (80.0, 160.0)
 """The speeds of Figure 3, km/h."""
 OPTIMUM: Final = (15.0, 20.0)
@@ -59,7 +61,8 @@ def applies(study: Study, paper: Scenario) -> bool:
     axes = {axis.key: axis for axis in study.axes}
     if any(len(axis.values) > 1 and key not in (SPEED, TORQUE, LIQUID) for key, axis in axes.items()):
         return False
-    if SPEED not in axes or TORQUE not in axes or not {"modal", SOLID} <= set(axes[LIQUID].values):
+    models = set(axes[LIQUID].values)
+    if SPEED not in axes or TORQUE not in axes or SOLID not in models or models == {SOLID}:
         return False
     speeds = {study.conditions(index)["v0_km_h"] for index in range(study.size)}
     return set(SPEEDS) <= speeds and len(axes[TORQUE].values) > 1 and _same_wagon(study.base, paper)
@@ -70,13 +73,13 @@ def _same_wagon(base: Scenario, paper: Scenario) -> bool:
     return (base.wagon, tank, base.track, base.contact) == (paper.wagon, paper.tank, paper.track, paper.contact)
 
 
-def verdicts(rows: Iterable[Mapping[str, Any]]) -> list[Verdict]:
-    """The claims about Figure 3, from the rows of a study's table."""
+def verdicts(rows: Iterable[Mapping[str, Any]], liquid: str = LINEAR) -> list[Verdict]:
+    """The claims about Figure 3 for one model of the `liquid`, from the rows of a study's table."""
     curves: dict[tuple[float, str], Curve] = {}
     for row in rows:
         point = Point(row.get("braking_distance_m"), str(row["status"]), bool(row.get("liquid_in_range")))
         curves.setdefault((row["v0_km_h"], row["liquid"]), {})[row["torque_kN_m"]] = point
-    return [_optimum(curves), _longer(curves), _fifteen_percent(curves)]
+    return [_optimum(curves, liquid), _longer(curves, liquid), _fifteen_percent(curves, liquid)]
 
 
 def most_effective(curve: Curve) -> tuple[float, Point] | None:
@@ -88,22 +91,22 @@ def most_effective(curve: Curve) -> tuple[float, Point] | None:
     return torque, point
 
 
-def _optimum(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+def _optimum(curves: Mapping[tuple[float, str], Curve], liquid: str) -> Verdict:
     found: list[bool | None] = []
     parts: list[str] = []
     for speed in SPEEDS:
-        for liquid in ("modal", SOLID):
-            curve = curves.get((speed, liquid), {})
+        for load in (liquid, SOLID):
+            curve = curves.get((speed, load), {})
             best = most_effective(curve)
             lost = [f"{torque:g}" for torque, point in curve.items() if point.distance is None]
             gaps = f"; without an answer at {', '.join(lost)} kN m" if lost else ""
             if best is None:
-                parts.append(f"{speed:g} km/h {liquid}: no stop has an answer")
+                parts.append(f"{speed:g} km/h {load}: no stop has an answer")
                 found.append(None)
                 continue
             torque, point = best
-            where = "" if point.liquid_in_range else ", outside linear theory"
-            parts.append(f"{speed:g} km/h {liquid}: {torque:g} kN m ({point.distance:.1f} m{where}){gaps}")
+            where = "" if point.liquid_in_range else f", {_outside(load)}"
+            parts.append(f"{speed:g} km/h {load}: {torque:g} kN m ({point.distance:.1f} m{where}){gaps}")
             found.append(OPTIMUM[0] <= torque <= OPTIMUM[1])
     text = "the most effective torque lies between 15 and 20 kN m at 80 and at 160 km/h"
     torques = [torque for curve in curves.values() for torque in curve]
@@ -112,11 +115,11 @@ def _optimum(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
     return Verdict("fig3-optimum", text, _overall(found), ". ".join(parts))
 
 
-def _longer(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+def _longer(curves: Mapping[tuple[float, str], Curve], liquid: str) -> Verdict:
     ratios: dict[tuple[float, float], float] = {}
     for speed in SPEEDS:
         solid = curves.get((speed, SOLID), {})
-        for torque, point in curves.get((speed, "modal"), {}).items():
+        for torque, point in curves.get((speed, liquid), {}).items():
             other = solid[torque].distance if torque in solid else None
             if point.distance is not None and other is not None:
                 ratios[speed, torque] = point.distance / other
@@ -135,27 +138,29 @@ def _longer(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
     return Verdict("fig3-longer", text, _overall([len(longer) == len(ratios), large]), evidence)
 
 
-def _fifteen_percent(curves: Mapping[tuple[float, str], Curve]) -> Verdict:
+def _fifteen_percent(curves: Mapping[tuple[float, str], Curve], liquid: str) -> Verdict:
     text = "about 15 % longer at 160 km/h and 20 kN m"
     speed, torque = NAMED_POINT
-    pair = [curves.get((speed, liquid), {}).get(torque) for liquid in ("modal", SOLID)]
-    if None in pair:
+    wet, solid = (curves.get((speed, load), {}).get(torque) for load in (liquid, SOLID))
+    if wet is None or solid is None:
         return Verdict("fig3-15-percent", text, Finding.OPEN, "the study has no such pair of stops")
-    liquid, solid = (point for point in pair if point is not None)
-    if liquid.distance is None or solid.distance is None:
-        evidence = f"liquid: {_told(liquid)}, solid: {_told(solid)}"
+    evidence = f"liquid: {_told(wet, liquid)}, solid: {_told(solid, SOLID)}"
+    if wet.distance is None or solid.distance is None:
         return Verdict("fig3-15-percent", text, Finding.OPEN, evidence)
-    ratio = liquid.distance / solid.distance
+    ratio = wet.distance / solid.distance
     low, high = ABOUT_15_PERCENT
     finding = Finding.HOLDS if low <= ratio <= high else Finding.FAILS
-    evidence = f"liquid: {_told(liquid)}, solid: {_told(solid)}, {_percent(ratio)}"
-    return Verdict("fig3-15-percent", text, finding, evidence)
+    return Verdict("fig3-15-percent", text, finding, f"{evidence}, {_percent(ratio)}")
 
 
-def _told(point: Point) -> str:
+def _told(point: Point, load: str) -> str:
     if point.distance is None:
         return point.status
-    return f"{point.distance:.1f} m{'' if point.liquid_in_range else ' (outside linear theory)'}"
+    return f"{point.distance:.1f} m{'' if point.liquid_in_range else f' ({_outside(load)})'}"
+
+
+def _outside(load: str) -> str:
+    return "outside linear theory" if load == LINEAR else "outside its theory"
 
 
 def _percent(ratio: float) -> str:

@@ -100,6 +100,14 @@ def test_what_lies_outside_linear_theory_says_so() -> None:
     assert "outside linear theory" in found["fig3-15-percent"].evidence
 
 
+def test_another_model_of_the_liquid_is_judged_by_its_own_stops() -> None:
+    rows = figure() + [one | {"liquid": "shallow-water"} for one in figure(best=25.0) if one["liquid"] == "modal"]
+    found = {verdict.claim: verdict for verdict in verdicts(rows, "shallow-water")}
+    assert found["fig3-optimum"].finding is Finding.IN_PART
+    assert "80 km/h shallow-water: 25 kN m" in found["fig3-optimum"].evidence
+    assert by_claim(rows)["fig3-optimum"].finding is Finding.HOLDS
+
+
 @pytest.mark.parametrize(
     ("wishes", "expected"),
     [
@@ -109,6 +117,8 @@ def test_what_lies_outside_linear_theory_says_so() -> None:
         (Wishes(speeds="80"), False),
         (Wishes(torques="10"), False),
         (Wishes(liquids="modal"), False),
+        (Wishes(liquids="rigid"), False),
+        (Wishes(liquids="shallow-water,rigid"), True),
         (Wishes(vary=["tank.fill=0.4,0.5"], speeds="80,160"), False),
         (Wishes(overrides=["tank.fill=0.6"]), False),
         (Wishes(overrides=["contact.adhesion=wet"]), False),

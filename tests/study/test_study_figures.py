@@ -140,6 +140,15 @@ def test_several_pages_are_numbered(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     ]  # fmt: skip
 
 
+def test_figures_of_an_earlier_study_that_had_more_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(figures, "RESOLUTION", 25)
+    others = ["notes.png", "braking_distance_of_mine.png", "braking_distance.csv"]
+    for name in (*others, "braking_distance_1.png", "braking_distance_12.svg"):
+        (tmp_path / name).touch()
+    draw_study([page()], tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {*others, "braking_distance.png", "braking_distance.svg"}
+
+
 def shown(wishes: Wishes) -> list[tuple[str, str, list[str]]]:
     """Per figure of a study: its conditions, its label, the titles of its panels."""
     study = build(wishes)
