@@ -43,7 +43,7 @@ CACHE_FOLDER = _cache_home() / _digest_of_sources()
 numba.config.CACHE_DIR = str(CACHE_FOLDER)  # type: ignore[attr-defined]
 
 
-def _compile(function: F, **options: bool) -> F:
+def _compile(function: F, **options: Any) -> F:
     # without numba's memory manager (_nrt) a kernel cannot allocate: one that tries does not compile
     # (numba's type stubs know only the public options)
     jit: Any = numba.njit
@@ -55,6 +55,11 @@ def _compile(function: F, **options: bool) -> F:
 def kernel(function: F) -> F:
     """Compile `function`: nopython, GIL released, cached on disk, IEEE division, unable to allocate."""
     return _compile(function)
+
+
+def vector_kernel(function: F) -> F:
+    """Like `kernel` for work on vectors: terms may be summed in another order, products and sums fused."""
+    return _compile(function, fastmath={"reassoc", "contract"})
 
 
 def inner_kernel(function: F) -> F:

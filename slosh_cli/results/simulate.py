@@ -16,7 +16,7 @@ from slosh_cli.solver import advance, record, state
 from slosh_cli.solver.ledger import BRAKE, CREEP, FOUNDATION, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
 from slosh_cli.solver.run import Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import HALF, Problem, problem
-from slosh_cli.solver.stage import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
+from slosh_cli.solver.state import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.section import section_of
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR

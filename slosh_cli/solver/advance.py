@@ -21,8 +21,9 @@ from slosh_cli.solver.ledger import BRAKE, SLOPE, SLOSH_DAMPING, balance
 from slosh_cli.solver.method import DIAGONAL, GAMMA, OUTER
 from slosh_cli.solver.problem import LOSSES
 from slosh_cli.solver.record import record_row, step_extremes
-from slosh_cli.solver.stage import EVENTS, prepare_stage, solve_stage
+from slosh_cli.solver.stage import prepare_stage, solve_stage
 from slosh_cli.solver.state import (
+    EVENTS,
     INITIAL_KINETIC,
     LAST_ERROR,
     NEXT_OUTPUT,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.solver.cells import cells_energy
-from slosh_cli.solver.stage import running_resistance
+from slosh_cli.solver.contacts import running_resistance
 from slosh_cli.tank.modal import liquid_energy, liquid_loss
 from slosh_cli.track.moving import rail_ledger
 from slosh_cli.track.vectors import fill

@@ -9,12 +9,18 @@ from numpy.typing import NDArray
 
 from slosh_cli.solver.problem import LOSSES, Array, Cells, Point, empty_point
 from slosh_cli.tank.shallow import WORK_ROWS
-from slosh_cli.wagon.coordinates import COORDINATES, WHEELS
+from slosh_cli.wagon.coordinates import BODIES, COORDINATES, WHEELS
 
 # places in State.clock
 TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC, LAST_ERROR = range(8)
 # places in State.counts
 STEPS, REJECTED, PHASE, ROWS, STALLED = range(5)
+# places in State.work
+NEWTON, FACTORISATIONS, RIGHT_HAND_SIDES, EVENTS = range(4)
+# unit inputs of the wagon's response: a force up at each wheel, one along the track, a moment on each bogie
+PUSH_INPUT, BOGIE_INPUT, INPUTS = WHEELS, WHEELS + 1, WHEELS + 3
+UNKNOWNS = WHEELS + 1
+"""What is left of wagon and rail at a stage: four wheel loads and the acceleration along the track."""
 
 
 class State(NamedTuple):
@@ -59,32 +65,37 @@ class Scratch(NamedTuple):
     rail_factors: Array
     flexibility: Array
     missing: Array
-    combination: Array
+    rail_parts: Array
     rail_error: Array
     rail_error_rate: Array
     rail_zero: Array
     slosh_zero: Array
     linear: Array
-    jacobian: Array
+    response: Array
+    inputs: Array
+    free_bodies: Array
     right: Array
-    update: Array
     q_error: Array
     v_error: Array
     pivots: NDArray[np.int64]
     contact_flexibility: Array
-    contact_inverse: Array
-    small: Array
-    small_right: Array
-    small_pivots: NDArray[np.int64]
+    coupled: Array
+    coupled_right: Array
     load_before: Array
     load_change: Array
     load_gap: Array
+    creep_change: Array
+    spin_change: Array
+    spin_gap: Array
+    load_gain: Array
+    speed_gain: Array
+    spin_gain: Array
     normal_slope: Array
     creep_by_normal: Array
     creep_by_slip: Array
     creep_by_speed: Array
     resistance_slope: Array
-    factored_speed: Array
+    factored: Array
     free: Array
     cell_work: Array
     cell_sums: Array
@@ -92,32 +103,35 @@ class Scratch(NamedTuple):
 
 def new_scratch(unknowns: int, modes: int, cells: int) -> Scratch:
     """Work space for a rail of `unknowns` and a liquid of `modes` and `cells`."""
-    square, row = (COORDINATES, COORDINATES), COORDINATES
     return Scratch(
         base=empty_point(unknowns, modes),
-        rail_factors=np.zeros((unknowns, 7)),
-        flexibility=np.zeros((unknowns, WHEELS)),
+        rail_factors=np.zeros((7, unknowns)),
+        flexibility=np.zeros((WHEELS, unknowns)),
+        rail_parts=np.zeros((3, unknowns)),
         **{name: np.zeros(unknowns) for name in _RAIL_VECTORS},
         slosh_zero=np.zeros(modes),
-        linear=np.zeros(square),
-        jacobian=np.zeros(square),
-        **{name: np.zeros(row) for name in ("right", "update", "q_error", "v_error")},
-        pivots=np.zeros(row, dtype=np.int64),
-        **{name: np.zeros((WHEELS, WHEELS)) for name in ("contact_flexibility", "contact_inverse", "small")},
-        small_right=np.zeros(WHEELS),
-        small_pivots=np.zeros(WHEELS, dtype=np.int64),
+        linear=np.zeros((BODIES, BODIES)),
+        response=np.zeros((INPUTS, BODIES)),
+        inputs=np.zeros(INPUTS),
+        free_bodies=np.zeros(BODIES),
+        **{name: np.zeros(COORDINATES) for name in ("right", "q_error", "v_error")},
+        pivots=np.zeros(UNKNOWNS, dtype=np.int64),
+        contact_flexibility=np.zeros((WHEELS, WHEELS)),
+        coupled=np.zeros((UNKNOWNS, UNKNOWNS)),
+        coupled_right=np.zeros(UNKNOWNS),
         **{name: np.zeros(WHEELS) for name in _WHEEL_VECTORS},
         resistance_slope=np.zeros(1),
-        factored_speed=np.zeros(1),
+        factored=np.zeros(2),
         free=np.zeros(WHEELS),
         cell_work=np.zeros((WORK_ROWS, cells + 1)),
         cell_sums=np.zeros(4),
     )
 
 
-_RAIL_VECTORS = ("missing", "combination", "rail_error", "rail_error_rate", "rail_zero")
+_RAIL_VECTORS = ("missing", "rail_error", "rail_error_rate", "rail_zero")
 _WHEEL_VECTORS = (
-    "load_before", "load_change", "load_gap", "normal_slope",
+    "load_before", "load_change", "load_gap", "creep_change", "spin_change", "spin_gap",
+    "load_gain", "speed_gain", "spin_gain", "normal_slope",
     "creep_by_normal", "creep_by_slip", "creep_by_speed",
 )  # fmt: skip
 

@@ -7,21 +7,22 @@ implicit method of order 2, L-stable, with an embedded third-order companion: R.
 
 from __future__ import annotations
 
-from slosh_cli.compiled import inner_kernel
+from slosh_cli.compiled import inner_kernel, vector_kernel
 from slosh_cli.solver.cells import FORCE, MOMENT, OWED_FORCE, carry_cells, expect_push
-from slosh_cli.solver.dense import solve_dense
+from slosh_cli.solver.contacts import respond
+from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
 from slosh_cli.solver.method import DIAGONAL, ERROR_END, ERROR_MIDDLE, ERROR_START, GAMMA, OUTER
-from slosh_cli.solver.stage import RIGHT_HAND_SIDES, add_load_change, prepare_stage, solve_stage
-from slosh_cli.solver.state import PHASE
+from slosh_cli.solver.stage import prepare_stage, solve_stage
+from slosh_cli.solver.state import PHASE, RIGHT_HAND_SIDES
 from slosh_cli.track.banded import solve_banded_one
 from slosh_cli.track.moving import rail_residual
 from slosh_cli.track.vectors import copy
 from slosh_cli.wagon.brake import brake_torque
-from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+from slosh_cli.wagon.coordinates import BODIES, CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
 
 
-@inner_kernel
+@vector_kernel
 def _predict(values, rates, seconds, more_rates, more_seconds, weight, weight_more, diagonal, base, base_rates):
     """Coordinates and velocities of a stage but for its own accelerations, into `base`, `base_rates`."""
     for i in range(values.size):
@@ -50,7 +51,7 @@ def _guess(source, point):
     copy(source.normal, point.normal)
 
 
-@inner_kernel
+@vector_kernel
 def _extrapolate(start, middle, end):
     """Start the iteration of the last stage from the line through the first two."""
     for i in range(end.size):
@@ -70,7 +71,7 @@ def take_step(model, scratch, state, time, step):
     if wet and not expect_push(model, scratch, state, step):
         return -1.0
     implicit = DIAGONAL * step
-    speed = start.v[0] + step * start.a[0]
+    speed = start.v[0] + 0.5 * (1.0 + GAMMA) * step * start.a[0]
     prepare_stage(model, scratch, work, implicit, speed, start.a[0])
     base, push = scratch.base, state.push
     _predict_point(start, start, implicit, 0.0, implicit, base)
@@ -98,7 +99,7 @@ def take_step(model, scratch, state, time, step):
     return error
 
 
-@inner_kernel
+@vector_kernel
 def _difference(start, middle, end, step, result):
     for i in range(start.size):
         result[i] = step * (ERROR_START * start[i] + ERROR_MIDDLE * middle[i] + ERROR_END * end[i])
@@ -113,7 +114,7 @@ def _rail_error(model, scratch, work, start, middle, end, step, implicit, place)
     _difference(start.rail_second, middle.rail_second, end.rail_second, step, error_rate)
     for i in range(error.size):
         error[i] *= -implicit
-    rail_residual(rail, error, scratch.rail_zero, error_rate, end.v[0], end.a[0], scratch.combination, scratch.missing)
+    rail_residual(rail, error, scratch.rail_zero, error_rate, end.v[0], end.a[0], scratch.rail_parts, scratch.missing)
     solve_banded_one(scratch.rail_factors, scratch.missing)
     work[RIGHT_HAND_SIDES] += 1
     for i in range(WHEELS):
@@ -168,16 +169,12 @@ def _error(model, scratch, work, start, middle, end, locked, step):
         right[i] = total
     slosh = _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right)
     _rail_error(model, scratch, work, start, middle, end, step, implicit, scratch.free)
+    solve_symmetric(scratch.linear, right[:BODIES])
     for i in range(WHEELS):
-        scratch.load_gap[i] = scratch.normal_slope[i] * (scratch.free[i] - q_error[WHEEL_HEAVE + i])
-    for i in range(WHEELS):
-        scratch.load_change[i] = 0.0
-        for j in range(WHEELS):
-            scratch.load_change[i] += implicit * scratch.contact_inverse[i, j] * scratch.load_gap[j]
-        if locked[i]:
-            right[WHEEL_SPIN + i] = 0.0
-    add_load_change(model, scratch, locked, right, scratch.load_change)
-    solve_dense(scratch.jacobian, scratch.pivots, right)
+        apart = scratch.free[i] - q_error[WHEEL_HEAVE + i] - implicit * right[WHEEL_HEAVE + i]
+        scratch.load_gap[i] = implicit * scratch.normal_slope[i] * apart
+        scratch.spin_gap[i] = 0.0 if locked[i] else right[WHEEL_SPIN + i]
+    respond(model, scratch, locked, implicit, right)
     size = slosh / control.slosh_scale
     for i in range(COORDINATES):
         place = q_error[i] + implicit * right[i]

@@ -23,7 +23,7 @@ HALF_BAND = 3
 class RailModel(NamedTuple):
     """Semi-discrete rail. Unknowns (n,): slope at the left end, deflection and slope node by node, last slope.
 
-    The five forms are banded row by row, `form[i, HALF_BAND + j - i]`, shape (n, 7), with N the shape functions:
+    The five forms are stored by diagonals, `form[HALF_BAND + j - i, i]`, shape (7, n), with N the shape functions:
     `mass_form` INT N N, `tension_form` INT N' N', `drift_form` INT N N', `bending_form` INT N'' N'',
     `twist_form` INT N' N''. `contact` (4,) are the unknowns under wheels 1 to 4; the slope follows each.
     """
@@ -80,7 +80,7 @@ def rail_model(track: Track, wheels: Array) -> RailModel:
     """Assemble the rail under `wheels` (m, positions of wheels 1 to 4 relative to the wagon's centre)."""
     nodes = fitted_nodes(wheels, track.domain.length, track.domain.element_length)
     unknowns = 2 * nodes.size - 2  # the deflection at either end is held at zero
-    forms = np.zeros((5, unknowns, 2 * HALF_BAND + 1))
+    forms = np.zeros((5, 2 * HALF_BAND + 1, unknowns))
     # unknown k of node i (k = 0 deflection, 1 slope); -1 where held
     numbers = np.arange(2 * nodes.size).reshape(-1, 2) - 1
     numbers[-1] = -1, unknowns - 1
@@ -92,7 +92,7 @@ def rail_model(track: Track, wheels: Array) -> RailModel:
             free = (places[:, i] >= 0) & (places[:, j] >= 0)
             row, column = places[free, i], places[free, j]
             for form, values in zip(forms, element_forms[free, :, i, j].T, strict=True):
-                np.add.at(form, (row, HALF_BAND + column - row), values)
+                np.add.at(form, (HALF_BAND + column - row, row), values)
     contact = np.array([numbers[np.argmin(np.abs(nodes - wheel)), 0] for wheel in wheels], dtype=np.int64)
     foundation = track.foundation
     return RailModel(
@@ -117,7 +117,7 @@ def critical_speed(rail: RailModel) -> float:
 
 
 def steady_matrix(rail: RailModel, speed: float) -> Array:
-    """Banded K of model section 6 at constant `speed` (m/s), laid out like the forms; (n, 7)."""
+    """Banded K of model section 6 at constant `speed` (m/s), laid out like the forms; (7, n)."""
     tension = rail.shear_stiffness - rail.mass * speed**2
     return (
         rail.bending_stiffness * rail.bending_form
@@ -133,11 +133,11 @@ def steady_shapes(rail: RailModel, speed: float) -> Array:
     from scipy.linalg import solve_banded
 
     banded = steady_matrix(rail, speed)
-    size = banded.shape[0]
+    size = banded.shape[1]
     diagonals = np.zeros((2 * HALF_BAND + 1, size))
-    for offset in range(-HALF_BAND, HALF_BAND + 1):  # row-wise storage to LAPACK's
+    for offset in range(-HALF_BAND, HALF_BAND + 1):  # LAPACK stores a diagonal by columns
         rows = np.arange(max(0, -offset), min(size, size - offset))
-        diagonals[HALF_BAND - offset, rows + offset] = banded[rows, HALF_BAND + offset]
+        diagonals[HALF_BAND - offset, rows + offset] = banded[HALF_BAND + offset, rows]
     loads = np.zeros((size, rail.contact.size))
     loads[rail.contact, np.arange(rail.contact.size)] = -1.0
     return np.asarray(solve_banded((HALF_BAND, HALF_BAND), diagonals, loads))

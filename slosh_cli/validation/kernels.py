@@ -31,7 +31,7 @@ def rail_residual(rail: RailModel, y: Array, speed: float) -> Array:
     """Nodal forces (n,) that hold the rail in the steady shape `y` (n,) at constant `speed` in m/s."""
     kernel: Any = moving.rail_residual
     still, residual = np.zeros_like(y), np.zeros_like(y)
-    kernel(rail, y, still, still, speed, 0.0, np.zeros_like(y), residual)
+    kernel(rail, y, still, still, speed, 0.0, np.zeros((3, y.size)), residual)
     return residual
 
 

@@ -11,5 +11,7 @@ BOGIE_HEAVE = 3  # front; the rear bogie follows two places on
 BOGIE_PITCH = 4  # front; the rear bogie follows two places on
 WHEEL_HEAVE = 7  # wheels 1 to 4
 WHEEL_SPIN = 11  # wheels 1 to 4
+BODIES = WHEEL_SPIN
+"""Coordinates before the spins; a spin feels nothing but its own contact and brake."""
 COORDINATES = 15
 WHEELS = 4

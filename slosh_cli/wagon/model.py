@@ -44,7 +44,6 @@ class WagonModel(NamedTuple):
     car_row: Array
     gravity_stiffness: float
     wheel_radius: float
-    spin_inertia: float
     resistance: Array
 
 
@@ -141,6 +140,5 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
         car_row=car_at_height(wagon, wagon.car_body.centre_height),
         gravity_stiffness=gravity_stiffness,
         wheel_radius=wagon.wheelset.wheel_radius,
-        spin_inertia=0.5 * wagon.wheelset.spin_inertia,
         resistance=0.5 * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
     )

@@ -91,7 +91,7 @@ def test_nothing_but_wheels_and_resistance_takes_momentum(stop, shipped, until, 
     wagon, brake = stop_.model.wagon, stop_.model.brake
     spin = run.state.start.v[-4:] - before.start.v[-4:]
     braked = brake.torque * (run.state.clock[0] - brake.onset)
-    by_wheels = float(np.sum(wagon.spin_inertia * spin + braked)) / wagon.wheel_radius
+    by_wheels = float(np.sum(wagon.mass[-1, -1] * spin + braked)) / wagon.wheel_radius
     constant, linear, quadratic = wagon.resistance
     speed = result.channels["speed"]
     by_air = CubicSpline(result.time, constant + linear * speed + quadratic * speed**2).integrate(0, result.time[-1])

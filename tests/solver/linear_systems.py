@@ -112,7 +112,7 @@ def march(stop, start, step):
 def started(stop, x, v, rail=None, rail_rate=None):
     """A point with these displacements and velocities (wagon and slosh), moving at the cruising speed on top."""
     model = stop.model
-    unknowns, modes = model.rail.mass_form.shape[0], model.liquid.mu.size
+    unknowns, modes = model.rail.mass_form.shape[1], model.liquid.mu.size
     start = empty_point(unknowns, modes)
     start.q[:], start.v[:] = x[:COORDINATES], v[:COORDINATES]
     start.v[0] += CRUISE

@@ -10,8 +10,7 @@ from slosh_cli.solver import advance as loop
 from slosh_cli.solver.events import EVENT_COUNT
 from slosh_cli.solver.record import SLOSH_COLUMN
 from slosh_cli.solver.setup import problem
-from slosh_cli.solver.stage import EVENTS
-from slosh_cli.solver.state import REJECTED, TIME, new_scratch, new_state
+from slosh_cli.solver.state import EVENTS, REJECTED, TIME, new_scratch, new_state
 from slosh_cli.wagon.coordinates import WHEEL_HEAVE, WHEEL_SPIN
 
 NEARNESS = [0.0, 1e-8, 3e-7, 9e-7, 1.1e-6, 1.5e-6, 3e-6, 1e-5, 1e-4, 1e-2]

@@ -114,13 +114,13 @@ def test_tr_bdf2_is_of_order_2_and_l_stable():
 
 def rail_system(rail, speed):
     """M, C, K of the model's rail at constant speed as full matrices."""
-    size = rail.mass_form.shape[0]
+    size = rail.mass_form.shape[1]
 
     def full(band):
         matrix = np.zeros((size, size))
         for offset in range(-3, 4):
             rows = np.arange(max(0, -offset), min(size, size - offset))
-            matrix[rows, rows + offset] = band[rows, 3 + offset]
+            matrix[rows, rows + offset] = band[3 + offset, rows]
         return matrix
 
     mass, stretch, drift, bend, twist = (full(band) for band in rail[:5])
@@ -152,7 +152,7 @@ def test_order_2_on_the_moving_rail(shipped):
 
 def test_rail_vibrations_far_faster_than_the_step_die_at_once(shipped):
     _, stop = wagon_of(shipped("paper_160_solid"), 1.0)
-    rng, size = np.random.default_rng(2), stop.model.rail.mass_form.shape[0]
+    rng, size = np.random.default_rng(2), stop.model.rail.mass_form.shape[1]
     shape, rest = 1e-3 * rng.normal(size=size), np.zeros(15)
     point = march(linear_stop(stop, 0.25, 1.0), started(stop, rest, rest, shape, 0 * shape), 0.25)
     assert np.abs(point.rail).max() < 1e-3 * np.abs(shape).max()

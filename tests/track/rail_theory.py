@@ -35,12 +35,12 @@ def track(element_length=0.5, length=80.0, shear=SHEAR, damping=0.0, shear_dampi
 
 
 def dense(banded):
-    """Full matrix of a row-wise band of three diagonals either side."""
-    size = banded.shape[0]
+    """Full matrix of a band of three diagonals either side, stored by diagonals."""
+    size = banded.shape[1]
     full = np.zeros((size, size))
     for i, j in product(range(size), repeat=2):
         if abs(i - j) <= 3:
-            full[i, j] = banded[i, 3 + j - i]
+            full[i, j] = banded[3 + j - i, i]
     return full
 
 

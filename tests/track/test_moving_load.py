@@ -106,7 +106,7 @@ def free_wave(element_length, speed, acceleration):
 
     def missing(*state):
         result = np.zeros(zero.size)
-        rail_residual(rail, *state, speed, acceleration, np.zeros(zero.size), result)
+        rail_residual(rail, *state, speed, acceleration, np.zeros((3, zero.size)), result)
         return abs(packet.conj() @ result)
 
     terms = [missing(*(state if i == k else zero for i, state in enumerate(states))) for k in range(3)]

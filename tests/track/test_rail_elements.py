@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rail_theory import FORMS, WHEELS, dense, exact_form, free_values, hermite, track
 
-from slosh_cli.track.banded import factor_banded, form_banded, multiply_banded, solve_banded_four, solve_banded_one
+from slosh_cli.track.banded import factor_banded, form_banded, solve_banded_four, solve_banded_one
 from slosh_cli.track.mem import fitted_nodes, rail_model, steady_matrix, steady_shapes
 from slosh_cli.track.moving import prepare_rail, rail_ledger, rail_residual
 
@@ -88,7 +88,7 @@ def test_steady_matrix_and_residual_are_those_of_the_model(uneven, V, A):
     assert np.abs(dense(steady_matrix(rail, V)) - steady).max() < 1e-12 * np.abs(steady).max()
     rng, size = np.random.default_rng(3), M.shape[0]
     y, rate, second = rng.normal(size=size), rng.normal(size=size), rng.normal(size=size)
-    scratch, residual = np.zeros(size), np.full(size, 7.0)
+    scratch, residual = np.zeros((3, size)), np.full(size, 7.0)
     for part in (y, rate, second):  # one at a time: none may hide behind the stiffest term
         states = [part if part is other else np.zeros(size) for other in (y, rate, second)]
         rail_residual(rail, *states, V, A, scratch, residual)
@@ -99,25 +99,26 @@ def test_steady_matrix_and_residual_are_those_of_the_model(uneven, V, A):
 @pytest.mark.parametrize("h", [0.0, 1e-5, 3e-3, 0.07])
 def test_stage_matrix_is_factored_and_condensed_on_the_wheels(uneven, h):
     rail, _, exact = uneven
-    V, A, size = 44.0, -30.0, rail.mass_form.shape[0]
+    V, A, size = 44.0, -30.0, rail.mass_form.shape[1]
     M, C, K = exact_matrices(rail, exact, V, A)
-    factors, flexibility = np.zeros((size, 7)), np.ones((size, 4))
+    factors, flexibility = np.zeros((7, size)), np.ones((4, size))
     prepare_rail(rail, h, V, A, factors, flexibility)
     under_wheels = np.zeros((size, 4))
     under_wheels[rail.contact, np.arange(4)] = 1.0
     expected = np.linalg.solve(M + h * C + h**2 * K, under_wheels)
-    assert np.abs(flexibility - expected).max() < 1e-9 * np.abs(expected).max()
+    assert np.abs(flexibility.T - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 def test_banded_solutions_agree_with_dense_ones():
     rng = np.random.default_rng(4)
-    band = rng.normal(size=(30, 7))
-    band[:, 3] += 9.0
+    band = rng.normal(size=(7, 30))
+    band[3] += 9.0
     full = dense(band)
-    one, four, product = rng.normal(size=30), rng.normal(size=(30, 4)), np.zeros(30)
-    expected_one, expected_four = np.linalg.solve(full, one), np.linalg.solve(full, four)
-    multiply_banded(band, one, 2.0, product)
-    assert product == pytest.approx(2.0 * full @ one, rel=1e-12, abs=1e-12)
+    for offset in (-3, -2, -1, 1, 2, 3):  # what lies outside the matrix is zero
+        band[3 + offset, [i for i in range(30) if not 0 <= i + offset < 30]] = 0.0
+    one, four = rng.normal(size=30), rng.normal(size=(4, 30))
+    expected_one, expected_four = np.linalg.solve(full, one), np.linalg.solve(full, four.T).T
+    assert form_banded(band, four[0], one) == pytest.approx(four[0] @ full @ one, rel=1e-12)
     factors = band.copy()
     factor_banded(factors)
     solve_banded_one(factors, one)
@@ -130,7 +131,7 @@ def test_energies_use_the_material_velocity(uneven):
     """Kinetic energy and foundation loss of a rail in motion, by quadrature of y_t - V y_r (model section 9)."""
     rail, nodes, _ = uneven
     rng, V = np.random.default_rng(5), 44.0
-    y, rate = rng.normal(size=rail.mass_form.shape[0]), 300.0 * rng.normal(size=rail.mass_form.shape[0])
+    y, rate = rng.normal(size=rail.mass_form.shape[1]), 300.0 * rng.normal(size=rail.mass_form.shape[1])
     points, weights = np.polynomial.legendre.leggauss(6)
     kinetic = elastic = loss = 0.0
     all_y, all_rate = (np.insert(values, [0, values.size - 1], 0.0) for values in (y, rate))

@@ -78,8 +78,8 @@ SABOTAGES: dict[str, Sabotage] = {
     "mem_vs_fem_convection": Sabotage(
         "mem-vs-fem",
         (
-            Edit("track.moving", "prepare_rail", "-2.0 * step * rail.mass * speed", "2.0 * step * rail.mass * speed"),
-            Edit("track.moving", "rail_residual", "-2.0 * rail.mass * speed", "2.0 * rail.mass * speed"),
+            Edit("track.moving", "_stage_matrix", "-2.0 * step * rail.mass * speed", "2.0 * step * rail.mass * speed"),
+            Edit("track.moving", "rail_residual", "2.0 * rail.mass * speed", "-2.0 * rail.mass * speed"),
         ),
         "rail under wheel",
         copy=True,
@@ -87,7 +87,7 @@ SABOTAGES: dict[str, Sabotage] = {
     "mem_vs_fem_acceleration": Sabotage(
         "mem-vs-fem",
         (
-            Edit("track.moving", "prepare_rail", "+ rail.mass * acceleration", "- rail.mass * acceleration"),
+            Edit("track.moving", "_stage_matrix", "+ rail.mass * acceleration", "- rail.mass * acceleration"),
             Edit("track.moving", "rail_residual", "+ rail.mass * acceleration", "- rail.mass * acceleration"),
         ),
         "rail under wheel",
@@ -184,8 +184,8 @@ SABOTAGES: dict[str, Sabotage] = {
     ),
     "figure2_brake_reaction": edit(
         "figure2",
-        "solver.stage",
-        "_wagon_residual",
+        "solver.contacts",
+        "_inputs",
         "+= point.torque[i]",
         "-= point.torque[i]",
         "leading wheel",
@@ -221,7 +221,7 @@ def edited(one: Edit) -> tuple[Any, str, Any]:
     source = textwrap.dedent(inspect.getsource(getattr(function, "py_func", function)))
     assert one.old in source, f"{one.function} has no {one.old!r} any more"
     lines = source.replace(one.old, one.new).splitlines()
-    text = "\n".join(line for line in lines if line.strip() not in ("@kernel", "@inner_kernel"))
+    text = "\n".join(line for line in lines if line.strip() not in ("@kernel", "@inner_kernel", "@vector_kernel"))
     namespace = dict(vars(module))
     code = compile("from __future__ import annotations\n" + text, f"<sabotaged {one.function}>", "exec")
     exec(code, namespace)
