@@ -18,6 +18,13 @@ from slosh_cli.validation.case import CaseResult
 from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.markdown import manual_chapter, row_table, summary_sentence
 
+FOREIGN = re.compile(
+    r"<(?:script|img|iframe|source|video)\b[^>]*\bsrc=[\"']?(?:https?:)?//[^\"'\s>]+"
+    r"|<link\b(?![^>]*\brel=[\"']?canonical)[^>]*\bhref=[\"']?(?:https?:)?//[^\"'\s>]+"
+    r"|(?:@import\s+|url\()[\"']?(?:https?:)?//[^\"'\s)]+"
+)
+"""What makes a browser fetch from elsewhere: scripts, images, styles, fonts. A link that a reader follows does not."""
+
 ROWS = re.compile(r"^\{\{ rows ([a-z0-9-]+)(?: \| (.+?))? \}\}$", re.MULTILINE)
 
 INTRODUCTION = """# Verification and validation
@@ -90,3 +97,17 @@ def on_files(files: Any, config: Any) -> Any:
 def on_page_markdown(markdown: str, **_: Mapping[str, Any]) -> str:
     """Put the tables of results into a page."""
     return with_rows(markdown)
+
+
+def fetched_from_elsewhere(text: str) -> list[str]:
+    """What a page or a style sheet would load from another host."""
+    return FOREIGN.findall(text)
+
+
+def on_post_build(config: Any) -> None:
+    """Refuse a site that needs a network. Raises ValueError with what it would fetch."""
+    for file in sorted(Path(config["site_dir"]).rglob("*")):
+        if file.suffix in (".html", ".css"):
+            found = fetched_from_elsewhere(file.read_text(encoding="utf-8"))
+            if found:
+                raise ValueError(f"{file.name} loads from elsewhere: {', '.join(found)}")

@@ -1,6 +1,7 @@
 """Figures of validation cases, as PNG and SVG: what the program computes over what it is compared with.
 
-The reference is a broad grey line beneath; computed curves differ in dash and lightness, points in their marker.
+The reference is a broad grey line beneath; computed curves differ in dash and lightness, points in their marker. The
+legend stands above the axes, where it hides nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from slosh_cli.validation.chart import Chart, Curve, Panel
 
 PANEL_WIDTH: Final = 7.0  # inches
-HEIGHT: Final = 5.4
+HEIGHT: Final = 5.8
 RESOLUTION: Final = 130  # dots per inch
 
 LINES: Final[tuple[dict[str, Any], ...]] = (
@@ -61,7 +62,7 @@ def case_figure(title: str, chart: Chart) -> Figure:
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
-    lines, marks, exact = cycle(LINES), cycle(MARKS), cycle(EXACT)
+    lines, marks, exact = cycle(LINES), cycle(zip(MARKS, LINES, strict=False)), cycle(EXACT)
     for one in panel.curves:
         _draw_curve(axes, one, lines, marks, exact)
     axes.set_xlabel(panel.x_label)
@@ -70,17 +71,28 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         axes.set_xscale("log")
     if panel.log_y:
         axes.set_yscale("log")
-    axes.legend(fontsize=9.5)
+    axes.legend(
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        borderaxespad=0.2,
+        fontsize=11,
+        title=panel.title or None,
+        alignment="left",
+        ncols=_columns(panel),
+    )
+
+
+def _columns(panel: Panel) -> int:
+    """Columns of the legend: as many as the longest label leaves room for."""
+    longest = max(len(one.label) for one in panel.curves)
+    return max(1, min(len(panel.curves), 76 // (longest + 6)))
 
 
 def _draw_curve(axes: Axes, one: Curve, lines: Any, marks: Any, exact: Any) -> None:
     if one.exact:
-        marker = next(marks) if one.marks else None
-        axes.plot(
-            one.x, one.y, color=next(exact), linewidth=5.0, solid_capstyle="round", marker=marker, label=one.label
-        )
+        axes.plot(one.x, one.y, color=next(exact), linewidth=5.0, solid_capstyle="round", label=one.label)
     elif one.marks:
-        colour = next(lines)["color"]
-        axes.plot(one.x, one.y, linestyle="none", marker=next(marks), color=colour, markersize=5.5, label=one.label)
+        marker, line = next(marks)
+        axes.plot(one.x, one.y, linestyle="none", marker=marker, color=line["color"], markersize=6.5, label=one.label)
     else:
         axes.plot(one.x, one.y, **next(lines), label=one.label)

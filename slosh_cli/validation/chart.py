@@ -27,13 +27,14 @@ def curve(label: str, x: ArrayLike, y: ArrayLike, *, exact: bool = False, marks:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Curves over one pair of axes; labels carry the unit."""
+    """Curves over one pair of axes; labels carry the unit, the title what tells panels of one chart apart."""
 
     x_label: str
     y_label: str
     curves: Sequence[Curve] = field(default_factory=tuple)
     log_x: bool = False
     log_y: bool = False
+    title: str = ""
 
 
 @dataclass(frozen=True, eq=False)

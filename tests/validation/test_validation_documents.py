@@ -80,6 +80,41 @@ def test_commands_in_the_pages_exist(page, capsys):
         capsys.readouterr()
 
 
+@pytest.mark.parametrize(
+    ("text", "fetches"),
+    [
+        ('<script src="https://cdn.example/a.js"></script>', True),
+        ("<script src=//cdn.example/a.js>", True),
+        ('<link rel="stylesheet" href="https://fonts.example/css">', True),
+        ('<link href="https://fonts.example" rel="preconnect" crossorigin>', True),
+        ("@import 'https://fonts.example/css';", True),
+        ("src: url(https://fonts.example/a.woff2)", True),
+        ('<img alt="x" src="http://elsewhere.example/a.png">', True),
+        ('<script src="assets/a.js"></script><link rel="stylesheet" href="assets/a.css">', False),
+        ('<a href="https://elsewhere.example/paper">paper</a>', False),
+        ('<link rel="canonical" href="https://elsewhere.example/">', False),
+        ('src: url(data:image/svg+xml;charset=utf-8,<svg xmlns="http://www.w3.org/2000/svg"/>)', False),
+    ],
+)
+def test_a_page_that_loads_from_elsewhere_is_seen(hooks, text, fetches):
+    assert bool(hooks.fetched_from_elsewhere(text)) is fetches
+
+
+def test_a_site_that_needs_a_network_is_refused(hooks, tmp_path):
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "style.css").write_text("body {}", encoding="utf-8")
+    hooks.on_post_build({"site_dir": str(tmp_path)})
+    (tmp_path / "assets" / "style.css").write_text("@import '//fonts.example/css';", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"style\.css loads from elsewhere"):
+        hooks.on_post_build({"site_dir": str(tmp_path)})
+
+
+def test_the_site_has_every_page():
+    navigation = (DOCS.parent / ".mkdocs.yml").read_text(encoding="utf-8")
+    for page in PAGES:
+        assert f": {page.name}\n" in navigation, page.name
+
+
 def test_what_the_findings_say_in_prose(stop):
     """Surface at roof and bottom at 5 kN m, past them at 7.5 kN m."""
     at_five, at_more = (stop("paper_80", f"braking.torque={torque} kN m") for torque in (5, 7.5))

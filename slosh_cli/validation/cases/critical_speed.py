@@ -34,10 +34,17 @@ def compute(data: CaseData) -> Outcome:
         found.compare(
             f"where the elements' deflection grows without bound, {shear:g} N / m/s", reached, waves, "elements"
         )
-        line = curve("free waves", [0, waves], [under[0] ** -2 * waves**2 / (waves**2 - speeds[0] ** 2), 0], exact=True)
-        points = curve("moving elements", speeds**2 / waves, under**-2.0, marks=True)
+        line = curve(
+            "free waves", [0, waves], [1e-12 * under[0] ** -2 * waves**2 / (waves**2 - speeds[0] ** 2), 0], exact=True
+        )
+        points = curve("moving elements", speeds**2 / waves, 1e-12 * under**-2.0, marks=True)
         panels.append(
-            Panel("V^2 / V_cr / m/s", f"(1 N / deflection)^2, {shear:g} N shear layer / N^2/m^2", (line, points))
+            Panel(
+                "V^2 / V_cr / m/s",
+                "(load over deflection)^2 / (kN/mm)^2",
+                (line, points),
+                title=f"shear layer of {shear / 1e3:g} kN",
+            )
         )
     _refusals(data, found)
     return found.outcome(Chart(panels))

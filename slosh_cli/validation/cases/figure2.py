@@ -70,5 +70,5 @@ def _chart(liquid: Result, solid: Result) -> Chart:
     panels = []
     for words, result in (("liquid", liquid), ("equivalent solid", solid)):
         loads = [curve(f"wheel {i}", result.time, result.channels[wheel(i, "normal_force")] / 1e3) for i in WHEELS]
-        panels.append(Panel("time / s", f"wheel load, {words} / kN", loads))
+        panels.append(Panel("time / s", "wheel load / kN", loads, title=words))
     return Chart(panels)

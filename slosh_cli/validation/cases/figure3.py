@@ -57,4 +57,4 @@ def _panel(tables: Mapping[str, Rows], speed: float) -> Panel:
             distances = [np.nan if distance is None else distance for _, distance in points]
             label = "equivalent solid" if model == SOLID else f"liquid, {words} coefficients"
             curves.append(curve(label, [torque for torque, _ in points], distances))
-    return Panel("brake torque per wheel / kN m", f"braking distance at {speed:g} km/h / m", curves)
+    return Panel("brake torque per wheel / kN m", "braking distance / m", curves, title=f"{speed:g} km/h")

@@ -44,7 +44,7 @@ def compute(data: CaseData) -> Outcome:
             curve("shallow water", middle, flowing / weight),
             curve("modal, one mode", middle, linear / weight),
         )
-        panels.append(Panel("time / s", f"force over m a, {deceleration} m/s^2", curves))
+        panels.append(Panel("time / s", "force over m a", curves, title=f"{deceleration} m/s^2"))
     return found.outcome(Chart(panels))
 
 

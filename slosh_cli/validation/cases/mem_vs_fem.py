@@ -103,4 +103,4 @@ def _panel(name: str, result: Result, ground: Ground) -> Panel:
         seen = 1e3 * result.channels[wheel(i, "rail_deflection")]
         curves.append(curve(f"wheel {i}, fixed rail", result.time, 1e3 * ground.deflections[:, i - 1], exact=True))
         curves.append(curve(f"wheel {i}, moving elements", result.time, seen))
-    return Panel("time / s", f"rail under the wheel, {name} / mm", curves)
+    return Panel("time / s", "rail under the wheel / mm", curves, title=f"{name} track")

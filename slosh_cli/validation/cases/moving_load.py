@@ -80,7 +80,7 @@ def _chart(data: CaseData, errors: dict[tuple[str, float], list[float]]) -> Char
     orders = Panel(
         "element length / m",
         "relative error under the load",
-        (curve("h^4", LENGTHS, fourth, exact=True), *lines),
+        (curve("fourth power", LENGTHS, fourth, exact=True), *lines),
         log_x=True,
         log_y=True,
     )

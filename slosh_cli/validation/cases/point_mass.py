@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import atan, pi
 
+import numpy as np
+
 from slosh_cli.scenario import Scenario
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
@@ -18,7 +20,7 @@ def compute(data: CaseData) -> Outcome:
     found, curves = Findings(data), []
     stiff, torques = data.reference["stiff"], data.reference["torques"]
     for name in data.reference["scenarios"]:
-        ours, exact = [], []
+        ours = []
         for torque in torques:
             for slip, kalker in (("next to no slip", 100.0), ("ordinary slip", 4.12)):
                 words = (*stiff, f"contact.kalker_c11={kalker}", f"braking.torque={torque} kN m")
@@ -29,8 +31,9 @@ def compute(data: CaseData) -> Outcome:
                 found.compare(f"braking time, {label} / s", result.braking_time_s, seconds, "distance")
                 if kalker < 100.0:
                     ours.append(distance(result))
-                    exact.append(metres)
-        curves.append(curve(f"{name}: point mass", torques, exact, exact=True))
+        smooth = np.linspace(min(torques), max(torques), 40)
+        exact = [_expected(scenario(name, *stiff, f"braking.torque={torque} kN m"))[0] for torque in smooth]
+        curves.append(curve(f"{name}: point mass", smooth, exact, exact=True))
         curves.append(curve(f"{name}: program", torques, ours, marks=True))
     _ordinary_wagon(found)
     return found.outcome(Chart((Panel("brake torque per wheel / kN m", "braking distance / m", curves),)))

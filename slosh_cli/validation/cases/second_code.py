@@ -56,7 +56,7 @@ def compute(data: CaseData) -> Outcome:
     panels = []
     for pair in (linear[1], linear[4], linear[-1]):
         lines = (curve("exudyn", pair.time, pair.theirs, exact=True), curve("slosh", pair.time, pair.ours))
-        panels.append(Panel("time / s", f"{pair.label}, {given['paper_torque']}", lines))
+        panels.append(Panel("time / s", pair.label, lines, title=given["paper_torque"]))
     return found.outcome(Chart(panels))
 
 

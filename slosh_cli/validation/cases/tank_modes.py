@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
 
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.validation.case import Findings
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.exact.tank import ExactMode
 
-Table = Mapping[float, tuple[Sequence[SloshMode], Sequence[ExactMode]]]
+Exact = Callable[[int, float], ExactMode]
+"""The closed form of mode n at a filling."""
+NUMBERS = (1, 3, 5)
 
 
 def compare(found: Findings, where: str, modes: Sequence[SloshMode], exact: Sequence[ExactMode]) -> None:
@@ -23,16 +27,16 @@ def compare(found: Findings, where: str, modes: Sequence[SloshMode], exact: Sequ
         found.compare(f"slosh mass, {name} / kg", mode.slosh_mass, true.slosh_mass, "coupling")
 
 
-def frequency_chart(table: Table) -> Chart:
+def frequency_chart(computed: Mapping[float, Sequence[SloshMode]], exact: Exact) -> Chart:
     """Frequency and height of the force of each mode over the filling."""
-    fills = list(table)
-    panels = []
+    fills, panels = list(computed), []
+    smooth = np.linspace(min(fills), max(fills), 60)
     for label, name in (("omega / rad/s", "frequency"), ("height of the force / m", "height")):
         curves = []
-        for place, mode in enumerate(next(iter(table.values()))[1]):
-            exact = [getattr(table[fill][1][place], name) for fill in fills]
-            computed = [getattr(table[fill][0][place], name) for fill in fills]
-            curves.append(curve(f"mode {mode.n}, closed form", fills, exact, exact=True))
-            curves.append(curve(f"mode {mode.n}, finite elements", fills, computed, marks=True))
+        for place, n in enumerate(NUMBERS):
+            true = [getattr(exact(n, float(fill)), name) for fill in smooth]
+            ours = [getattr(computed[fill][place], name) for fill in fills]
+            curves.append(curve(f"mode {n}, closed form", smooth, true, exact=True))
+            curves.append(curve(f"mode {n}, finite elements", fills, ours, marks=True))
         panels.append(Panel("fill", label, curves))
     return Chart(panels)

@@ -24,9 +24,7 @@ class Builder:
         node = self.system.AddNode(
             self.items.NodeRigidBody2D(initialCoordinates=[0, y, 0], initialVelocities=[self.speed, 0, spin])
         )
-        return node, self.system.AddObject(
-            self.items.ObjectRigidBody2D(physicsMass=mass, physicsInertia=inertia, nodeNumber=node)
-        )
+        return node, self.system.AddObject(self.items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node))
 
     def weigh(self, body: int) -> None:
         """Gravity at a body's centre."""
