@@ -1,7 +1,5 @@
 """A free-surface computation by others' code (OpenFOAM's interFoam): liquid force and moment over 14 s of braking."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from shallow_tools import history, liquid_in, moving
@@ -9,16 +7,16 @@ from shallow_tools import history, liquid_in, moving
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.section import RectangularSection
 from slosh_cli.validation.cases import kolaei
+from slosh_cli.validation.data_file import read_table
 
-DATA = Path(__file__).parents[1] / "data"
 DEPTH = 1.1875
 LARGEST_RMS = {0.6: 0.16, 1.5: 0.11}
 LINEAR_RMS = {0.6: 0.218, 1.5: 0.363}
 
 
 def reference(deceleration):
-    lines = (DATA / f"interfoam_{deceleration}.csv").read_text(encoding="utf-8").splitlines()
-    return np.genfromtxt([line for line in lines if not line.startswith("#")], delimiter=",", names=True)
+    rows = read_table(f"interfoam_{deceleration}.csv")
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 def rms(values):

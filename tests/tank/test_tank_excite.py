@@ -1,6 +1,5 @@
 """The tank alone under a prescribed deceleration: against exact solutions, published peaks and interFoam."""
 
-import csv
 import math
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from slosh_cli.scenario import Liquid, Rectangular, load_tank_scenario
 from slosh_cli.solver.excite import Deceleration, excite
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.tank.load import frozen_load
+from slosh_cli.validation.data_file import read_table
 
 ROOT = Path(__file__).parents[2]
 LEVEL = 0.2 * 9.81
@@ -154,8 +154,7 @@ def test_a_rigid_load_follows():
 
 
 def interfoam(level):
-    with (ROOT / "tests" / "data" / f"interfoam_{level}.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = read_table(f"interfoam_{level}.csv")
     return (np.array([float(row[name]) for row in rows]) for name in ("time_s", "force_N_per_m", "moment_N"))
 
 

@@ -15,36 +15,16 @@ from slosh_cli.tank.longitudinal import TOLERANCE, longitudinal_mode, longitudin
 from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, liquid_depth, section_of
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
+from slosh_cli.validation.exact.tank import rectangle, trough
 
 GRAVITY = 9.81
 LENGTH = 5.75
 NUMBERS = (1, 3, 5)
+SETTLING = ("frequency", "lambda_02", "mu")
 
 
-def rectangle_exactly(n, width, depth, length, density):
-    """omega, lambda_1, lambda_02, mu of a rectangular tank: phi = cosh(k z) / (k sinh(k h))."""
-    k = n * math.pi / length
-    omega = math.sqrt(GRAVITY * k * math.tanh(k * depth))
-    lambda_1 = -2.0 * density * width / k**2
-    height = depth - 2.0 / k * math.tanh(k * depth / 2.0)
-    mu = density * length / 2.0 * width / (k * math.tanh(k * depth))
-    return omega, lambda_1, lambda_1 * height, mu
-
-
-def trough_exactly(n, depth, length, density):
-    """The same of a right-angled V trough: phi = C cosh(a y) cosh(a z), a = k/sqrt 2, C = h / sinh(a h)^2."""
-    k = n * math.pi / length
-    a = k / math.sqrt(2.0)
-    scale = depth / math.sinh(a * depth) ** 2
-    kappa = a * math.tanh(a * depth)
-    along = -2.0 / k**2
-    double = 2.0 * a * depth
-    surface = depth + math.sinh(double) / (2.0 * a)  # integral of cosh(a y)^2 over the width
-    mu = density * length / 2.0 * kappa * scale**2 * math.cosh(a * depth) ** 2 * surface
-    z_phi = scale / a * (depth * math.cosh(double) / (2.0 * a) - math.sinh(double) / (4.0 * a**2))
-    phi_n_z = scale * (math.sinh(double) / (2.0 * a) - depth)
-    lambda_02 = density * (-2.0 * z_phi - along * phi_n_z)
-    return math.sqrt(GRAVITY * kappa), density * along * 2.0 * depth, lambda_02, mu
+def couplings(mode):
+    return mode.lambda_1, mode.lambda_02, mode.mu
 
 
 @pytest.mark.parametrize("fill", [0.02, 0.2, 0.5, 0.98])
@@ -52,11 +32,11 @@ def test_rectangular_tank(fill):
     tank = box(fill)
     mass = frozen_load(tank).mass
     for n, mode in zip(NUMBERS, computed_modes(tank, 3), strict=True):
-        omega, lambda_1, lambda_02, mu = rectangle_exactly(n, 2.4, 3.0 * fill, LENGTH, 998.2)
-        assert mode.frequency == pytest.approx(omega, rel=1e-6)
-        assert mode.height == pytest.approx(lambda_02 / lambda_1, rel=1e-5)
-        assert mode.slosh_mass / mass == pytest.approx(lambda_1**2 / mu / mass, rel=1e-5)
-        assert (mode.lambda_1, mode.lambda_02, mode.mu) == pytest.approx((lambda_1, lambda_02, mu), rel=1e-5)
+        exact = rectangle(n, 2.4, 3.0 * fill, LENGTH, 998.2)
+        assert mode.frequency == pytest.approx(exact.frequency, rel=1e-6)
+        assert mode.height == pytest.approx(exact.height, rel=1e-5)
+        assert mode.slosh_mass / mass == pytest.approx(exact.slosh_mass / mass, rel=1e-5)
+        assert couplings(mode) == pytest.approx(couplings(exact), rel=1e-5)
 
 
 def test_the_rectangular_mass_fraction_has_its_closed_form():
@@ -71,23 +51,22 @@ def test_small_heights_of_a_shallow_liquid_settle_too():
     """At 9 cm in a 4.9 m tank the force acts 0.03 to 2 mm above the floor: a small difference of large integrals."""
     section, depth, length = RectangularSection(2.5687, 0.44586), 0.0934, 4.8742
     for mode in longitudinal_modes(section, depth, length, 5).modes:
-        _, lambda_1, lambda_02, _ = rectangle_exactly(mode.n, 2.5687, depth, length, 1.0)
-        assert mode.height == pytest.approx(lambda_02 / lambda_1, rel=1e-5)
+        assert mode.height == pytest.approx(rectangle(mode.n, 2.5687, depth, length, 1.0).height, rel=1e-5)
 
 
 def test_right_angled_trough():
     tank = polygon(V_TROUGH, fill=0.7)
     for n, mode in zip(NUMBERS, computed_modes(tank, 3), strict=True):
-        omega, lambda_1, lambda_02, mu = trough_exactly(n, 0.7, LENGTH, 998.2)
-        assert mode.frequency == pytest.approx(omega, rel=1e-6)
-        assert (mode.lambda_1, mode.lambda_02, mode.mu) == pytest.approx((lambda_1, lambda_02, mu), rel=1e-6)
+        exact = trough(n, 0.7, LENGTH, 998.2)
+        assert mode.frequency == pytest.approx(exact.frequency, rel=1e-6)
+        assert couplings(mode) == pytest.approx(couplings(exact), rel=1e-6)
 
 
 @pytest.mark.parametrize(
     ("section", "depth", "exact"),
     [
-        (RectangularSection(2.4, 3.0), 1.5, rectangle_exactly(5, 2.4, 1.5, LENGTH, 1.0)),
-        (PolygonalSection(V_TROUGH), 0.7, trough_exactly(5, 0.7, LENGTH, 1.0)),
+        (RectangularSection(2.4, 3.0), 1.5, rectangle(5, 2.4, 1.5, LENGTH, 1.0)),
+        (PolygonalSection(V_TROUGH), 0.7, trough(5, 0.7, LENGTH, 1.0)),
     ],
 )
 def test_frequency_and_couplings_converge_with_the_fourth_power_of_the_element_size(section, depth, exact):
@@ -95,8 +74,7 @@ def test_frequency_and_couplings_converge_with_the_fourth_power_of_the_element_s
     errors = []
     for _ in range(4):
         mode = longitudinal_mode(HalfSectionElements(mesh), 5, LENGTH)
-        values = (mode.frequency, mode.lambda_02, mode.mu)
-        errors.append([abs(value / exact[i] - 1.0) for i, value in zip((0, 2, 3), values, strict=True)])
+        errors.append([abs(getattr(mode, name) / getattr(exact, name) - 1.0) for name in SETTLING])
         mesh = mesh.refined()
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders[-1] == pytest.approx([4.0, 4.0, 4.0], abs=0.2)

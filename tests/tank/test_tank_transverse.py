@@ -1,8 +1,6 @@
 """Modes across the tank from the same code: published ones of the circular cylinder, overtones of a rectangle."""
 
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,13 +9,11 @@ from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
 from slosh_cli.tank.section import EllipticalSection, RectangularSection
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
-
-DATA = Path(__file__).parents[1] / "data"
+from slosh_cli.validation.data_file import read_table
 
 
 def transverse_table():
-    with (DATA / "transverse_modes.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = read_table("transverse_modes.csv")
     return [(float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in rows]
 
 

@@ -1,15 +1,15 @@
 """What the rail tests compare with: exact element integrals, closed forms and Fourier integrals (model section 6).
 
-Nothing here uses the program's own formulas.
+Nothing here uses the formulas under test; the exact solutions are those that `slosh validate` compares with.
 """
 
 from itertools import pairwise, product
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.integrate import quad
 
 from slosh_cli.scenario import Domain, Foundation, Rail, Track
+from slosh_cli.validation.exact import steady_rail
 
 WHEELS = np.array([4.0, 0.0, -2.0, -4.0])
 """Wheel 2 is the loaded one: it stands in the middle of the domain, and every spacing is a multiple of 1 m."""
@@ -68,27 +68,10 @@ def free_values(nodes, values, slopes):
 
 
 def closed_form(r, speed, shear=SHEAR, stiffness=K):
-    """Undamped steady deflection (m, down) per newton at distance `r` from a load moving at `speed`.
-
-    `y0 e^(-a|r|) (cos b r + (a/b) sin b|r|)` with y0 of model section 6; a and b solve `EI p^4 - T p^2 + k = 0`.
-    """
-    tension = shear - MASS * speed**2
-    root = 2 * np.sqrt(stiffness * EI)
-    y0 = 1 / (2 * np.sqrt(stiffness) * np.sqrt(tension + root))
-    a, b = np.sqrt((root + tension) / (4 * EI)), np.sqrt((root - tension) / (4 * EI))
-    r = np.abs(r)
-    return y0 * np.exp(-a * r) * (np.cos(b * r) + a / b * np.sin(b * r))
+    """Undamped steady deflection (m, down) per newton at distance `r` from a load moving at `speed`."""
+    return steady_rail.closed_form(steady_rail.Beam(EI, MASS, stiffness, shear), r, speed)
 
 
 def fourier_deflection(r, speed, shear, damping, shear_damping):
-    """Steady deflection (m, down) per newton with damping, `1/pi INT Re[e^(i xi r) / D(xi)] dxi`.
-
-    In the convected frame `d/dt = -V d/dr`, so `D = EI xi^4 + (k_sm - m V^2) xi^2 + k - i V xi (alpha + lam xi^2)`.
-    """
-
-    def transform(xi):
-        symbol = EI * xi**4 + (shear - MASS * speed**2) * xi**2 + K
-        return np.exp(1j * xi * r) / (symbol - 1j * speed * xi * (damping + shear_damping * xi**2))
-
-    pieces = np.concatenate([np.linspace(0.0, 20.0, 81), np.geomspace(20.0, 5e4, 200)[1:]])
-    return sum(quad(lambda xi: transform(xi).real, *piece, epsabs=1e-20)[0] for piece in pairwise(pieces)) / np.pi
+    """Steady deflection (m, down) per newton with damping, by quadrature."""
+    return steady_rail.fourier_integral(steady_rail.Beam(EI, MASS, K, shear, damping, shear_damping), r, speed)

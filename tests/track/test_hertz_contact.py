@@ -7,6 +7,7 @@ from scipy.integrate import quad
 from slosh_cli.scenario import Adhesion, Contact
 from slosh_cli.track.contact import contact_model, normal_force
 from slosh_cli.track.hertz import hertz_contact
+from slosh_cli.validation.exact.creep import half_space
 
 DRY = Adhesion(mu0=0.55, A=0.40, B=0.60, kA=1.00, kS=0.40)
 
@@ -21,26 +22,6 @@ def test_check_numbers():
     hertz = hertz_contact(0.46, 0.30, 210e9, 0.3)
     assert hertz.stiffness == pytest.approx(9.413e10, rel=1e-4)
     assert hertz.semi_axes(93e3) == (pytest.approx(7.0e-3, abs=5e-5), pytest.approx(5.3e-3, abs=5e-5))
-
-
-def half_space(semi_axes, force, modulus):
-    """Approach and curvatures that the pressure `p0 sqrt(1 - x^2/a^2 - y^2/b^2)` makes.
-
-    Johnson (3.64): surface displacements of both bodies `(L - M x^2 - N y^2)/(pi E*)`, `L`, `M`, `N` integrals over
-    psi from 0 to infinity; here psi = (t b/(1 - t))^2 makes them proper.
-    """
-    a, b = semi_axes
-    p0 = 3 * force / (2 * np.pi * a * b)
-
-    def integral(powers):
-        def integrand(t):
-            root, jacobian = t * b / (1 - t), 2 * b / (1 - t) ** 2
-            other = 1 / np.sqrt((a**2 + root**2) * (b**2 + root**2))
-            return jacobian * other / ((a**2 + root**2) ** powers[0] * (b**2 + root**2) ** powers[1])
-
-        return 0.5 * np.pi * p0 * a * b * quad(integrand, 0.0, 1.0 - 1e-9, epsrel=1e-10)[0] / (np.pi * modulus)
-
-    return integral((0, 0)), integral((1, 0)), integral((0, 1))
 
 
 @pytest.mark.parametrize(("wheel", "crown"), [(0.46, 0.30), (0.30, 0.46), (0.46, 0.08), (0.5, 3.0), (0.5, 0.5001)])
