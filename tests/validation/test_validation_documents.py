@@ -1,5 +1,6 @@
 """The pages of the documentation: built from the cases, complete, and right in what they say in prose."""
 
+import csv
 import importlib.util
 import re
 from pathlib import Path
@@ -16,12 +17,26 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
 
 
-@pytest.fixture(scope="module")
-def hooks():
-    specification = importlib.util.spec_from_file_location("docs_hooks", DOCS / "hooks.py")
+def script(name):
+    specification = importlib.util.spec_from_file_location(f"docs_{name}", DOCS / f"{name}.py")
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def hooks():
+    return script("hooks")
+
+
+@pytest.fixture(scope="module")
+def identifiability():
+    return script("identifiability")
+
+
+def stored_rows():
+    with (DOCS / "identifiability.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def made_up(data):
@@ -113,6 +128,25 @@ def test_the_site_has_every_page():
     navigation = (DOCS.parent / ".mkdocs.yml").read_text(encoding="utf-8")
     for page in PAGES:
         assert f": {page.name}\n" in navigation, page.name
+
+
+def test_the_identifiability_page_is_that_of_its_table(identifiability):
+    rows = stored_rows()
+    told = [(row["varied"], row["value"], row["changed"]) for row in rows]
+    assert told == [
+        (varied, value, "; ".join(changes))
+        for varied, values in identifiability.VARIED.items()
+        for value, changes in values
+    ]
+    assert (DOCS / "identifiability.md").read_text(encoding="utf-8") == identifiability.page(rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("row", [0, 10, 21])
+def test_a_row_of_the_identifiability_table_is_what_sweep_gives_today(identifiability, row, tmp_path):
+    stored = stored_rows()[row]
+    found = identifiability.examined(tmp_path / "study", tuple(filter(None, stored["changed"].split("; "))))
+    assert {key: str(value) for key, value in found.items()} == {key: stored[key] for key in found}
 
 
 def test_what_the_findings_say_in_prose(stop):
