@@ -94,8 +94,8 @@ Every row is one study. The row of 9 m pivot spacing is
 
     slosh sweep --set 'wagon.pivot_spacing=9 m'
 
-and the others have in place of that key what the column `changed` of `identifiability.csv` says. All of them, this page,
-its figure and that file are made by `python docs/identifiability.py`. Where a stop that a claim is about ends as
+and the others have in place of that key what the column `changed` of `identifiability.csv` says. All of them, this
+page, its figure and that file are made by `python docs/identifiability.py`. Where a stop that a claim is about ends as
 `overturned`, there is no answer.
 """
 COLUMNS = (

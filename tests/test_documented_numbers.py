@@ -1,0 +1,304 @@
+"""Every number in README and docs: listed in `data/documented_numbers.toml`, and what its command gives today."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+import shlex
+import tomllib
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from slosh_cli import load_scenario, simulate
+from slosh_cli.cli import main
+
+ROOT = Path(__file__).parents[1]
+DOCUMENTS = ["README.md", *(f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md")))]
+MADE_BY_A_SCRIPT = {"docs/identifiability.md"}  # compared with its table in test_validation_documents.py
+PHRASES = tomllib.loads((ROOT / "tests/data/documented_numbers.toml").read_text(encoding="utf-8"))["phrase"]
+TABLE_OF_THE_PAGE = "the table of the page"
+PLAIN_CODE = "tests/acceptance/test_against_plain_code.py"
+FIGURE_3 = "docs/what-stays-of-figure-3.md"
+
+CODE = re.compile(r"```.*?```|^(?: {4}|\t)[^\n]*$|`[^`]+`|\]\([^)]*\)", re.DOTALL | re.MULTILINE)
+NUMBER = re.compile(r"(?<![\w.^_/])[-+]?\d+(?:[ \u00a0]\d{3}\b)*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
+NAME = re.compile(r"\b(?:Figure|Table|section|code|wheel) \d+")
+"""Numbers that are names."""
+
+
+def text_of(document: str) -> str:
+    return (ROOT / document).read_text(encoding="utf-8")
+
+
+def without_code(text: str) -> str:
+    """The text with everything a reader types or that is a name blanked, at the same places."""
+    for hidden in (CODE, NAME):
+        text = hidden.sub(lambda match: re.sub(r"\S", "\u00b7", match[0]), text)
+    return text
+
+
+def place_of(phrase: str, text: str) -> re.Match[str] | None:
+    """Where a phrase stands in a text, whatever its line breaks."""
+    return re.search(r"\s+".join(map(re.escape, phrase.split())), text)
+
+
+def numbers_in(phrase: str) -> list[str]:
+    return NUMBER.findall(without_code(phrase))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+def test_every_number_is_listed(document):
+    if document in MADE_BY_A_SCRIPT:
+        return
+    raw = text_of(document)
+    visible = without_code(raw)
+    if document == FIGURE_3:  # its tables: see test_the_tables_of_figure_3
+        visible = visible[: visible.index("## The numbers")]
+    covered = [place_of(entry["text"], raw) for entry in PHRASES if entry["in"] == document]
+    spans = [match.span() for match in covered if match]
+    missing = [
+        f"{match[0]} in line {visible.count(chr(10), 0, match.start()) + 1}"
+        for match in NUMBER.finditer(visible)
+        if not any(first <= match.start() < last for first, last in spans)
+    ]
+    assert not missing, f"name the command in {document} and list these in tests/data/documented_numbers.toml"
+
+
+@pytest.mark.parametrize("entry", PHRASES, ids=lambda entry: entry["text"][:40])
+def test_an_entry_fits_its_document(entry):
+    """The words stand there, and so does the command that yields their numbers."""
+    assert place_of(entry["text"], text_of(entry["in"])), "the phrase is not in the document any more"
+    if "given" in entry:
+        return
+    named = entry.get("named", entry["command"])
+    assert place_of(named, text_of(entry["in"])), f"{entry['in']} must name the command {named!r}"
+    assert len(entry["told"]) == len(numbers_in(entry["text"])), numbers_in(entry["text"])
+
+
+def runs(slow: bool) -> list[object]:
+    return [
+        pytest.param(entry, id=entry["text"][:40])
+        for entry in PHRASES
+        if "given" not in entry and entry.get("slow", False) is slow
+    ]
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory):
+    """A command's answer, computed once; a list of commands has a list of answers."""
+    folder = tmp_path_factory.mktemp("told")
+
+    @cache
+    def answer(command):
+        if command == TABLE_OF_THE_PAGE:
+            return figure_3_tables()
+        if command == PLAIN_CODE:
+            return agreement_with_the_plain_code()
+        words = shlex.split(command)[1:]
+        if words[0] == "run":
+            words += ["--no-figures"]
+        if words[0] in ("run", "validate") or words[:2] == ["tank", "excite"]:
+            words += ["-o", str(folder)]
+        if words[0] != "schema":
+            words += ["--json"]
+        return spoken(words)
+
+    def answers(command):
+        return [answer(one) for one in command] if isinstance(command, list) else answer(command)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        for module in ("figures", "validation_figures"):
+            patch.setattr(f"slosh_cli.report.{module}.RESOLUTION", 20)
+        yield answers
+
+
+def spoken(words):
+    import contextlib
+    import io
+
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert main(words) == 0, words
+    return json.loads(out.getvalue())
+
+
+def compare(entry, answer):
+    names = {name: value for name, value in globals().items() if callable(value)} | {"a": answer, "math": math}
+    for token, expression in zip(numbers_in(entry["text"]), entry["told"], strict=True):
+        told = float(re.sub(r"[ \u00a0]", "", token))
+        if not expression:
+            continue
+        at_most = expression.startswith("at most: ")
+        found = eval(expression.removeprefix("at most: "), names)
+        if at_most:
+            assert found <= told, (token, expression, found)
+        else:
+            decimals = len(token.partition(".")[2])
+            assert round(found, decimals) == told, (token, expression, found)
+
+
+@pytest.mark.parametrize("entry", runs(slow=False))
+def test_a_number_is_what_its_command_gives(entry, answered):
+    compare(entry, answered(entry["command"]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", runs(slow=True))
+def test_a_number_is_what_its_slow_command_gives(entry, answered):
+    compare(entry, answered(entry["command"]))
+
+
+@pytest.mark.slow
+def test_the_tables_of_figure_3(tmp_path):
+    """The two studies that the page names, again: every cell of its tables."""
+    studies = {
+        "printed": ["--liquid", "rigid,modal,shallow-water"],
+        "computed": ["--liquid", "modal", "--set", "tank.coefficients=computed"],
+    }
+    rows = {}
+    for name, words in studies.items():
+        assert main(["sweep", *words, "-o", str(tmp_path / name)]) in (0, 3)
+        with (tmp_path / name / "braking_distance.csv").open(encoding="utf-8", newline="") as file:
+            for found in csv.DictReader(file):
+                load = f"modal, {name}" if found["liquid"] == "modal" else found["liquid"]
+                rows[int(float(found["v0_km_h"])), float(found["torque_kN_m"]), load] = found
+    for speed, table in figure_3_tables().items():
+        for torque, line in table.items():
+            at = {load: found for (v, t, load), found in rows.items() if (v, t) == (speed, torque)}
+            for load, found in at.items():
+                star = " *" if found["liquid_in_range"] == "False" and found["status"] == "stopped" else ""
+                distance = found["braking_distance_m"]
+                told = f"{float(distance):.1f}{star}" if distance else found["status"]
+                assert line[load] == told, (speed, torque, load)
+            for load, words in (("modal, computed", "least modal computed"), ("shallow-water", "least shallow")):
+                kilonewtons = min(float(at[load][f"min_wheel_load_{i}_N"]) for i in range(1, 5)) / 1e3
+                assert line[words] == f"{kilonewtons:.1f}", (speed, torque, words)
+            ratio = float(at["shallow-water"]["braking_distance_m"]) / float(at["rigid"]["braking_distance_m"])
+            assert line["shallow-water / rigid"] == f"{ratio:.3f}", (speed, torque)
+
+
+# What the expressions of the list may use.
+
+
+def row(answer, words):
+    """Value of the row of a validation case with `words` in its quantity."""
+    (found,) = [one["value"] for case in answer["cases"] for one in case["rows"] if words in one["quantity"]]
+    return found
+
+
+def excess(answer, words):
+    """How far the value of that row lies above its reference, as a part of it."""
+    (found,) = [one for case in answer["cases"] for one in case["rows"] if words in one["quantity"]]
+    return found["value"] / found["reference"] - 1
+
+
+def check(answer, name):
+    """A verdict's value."""
+    return next(one["value"] for one in answer["checks"] if one["check"] == name)
+
+
+def limit(answer, name):
+    """And its limit."""
+    return next(one["limit"] for one in answer["checks"] if one["check"] == name)
+
+
+def leaf(answer, kind, key):
+    """A key of the schema."""
+    return answer["$defs"][kind]["properties"][key]
+
+
+def too_high(answer):
+    """How far the printed frequency lies above the computed one, in per cent."""
+    return answer["deviations_percent"][0]["omega_rad_s"]
+
+
+def densities(answers):
+    """Densities that lambda_1 and mu of water tanks were printed for: lambda_1 ~ rho, mu ~ rho/omega^2."""
+    found = []
+    for answer in answers:
+        printed, computed = answer["given"][0], answer["modes"][0]
+        found.append(998.2 * printed["lambda_1_kg"] / computed["lambda_1_kg"])
+        slower = (printed["omega_rad_s"] / computed["omega_rad_s"]) ** 2
+        found.append(998.2 * printed["mu_kg"] / computed["mu_kg"] * slower)
+    return found
+
+
+def agreement_with_the_plain_code():
+    """Largest differences from the stored stops of the plain code: distance as a part, wheel loads in kN."""
+    distance, load = [], []
+    with (ROOT / "tests/data/plain_stops.csv").open(encoding="utf-8", newline="") as file:
+        stored = [stop for stop in csv.DictReader(file) if float(stop["step_s"]) == 0.0005]
+    for stop in stored:
+        overrides = [text.strip() for text in stop["overrides"].split(";") if text.strip()]
+        result = simulate(load_scenario(ROOT / "scenarios/paper_80.yaml", overrides))
+        distance.append(abs(result.braking_distance_m / float(stop["distance_m"]) - 1))
+        for i in range(4):
+            load.append(abs(result.min_wheel_load_N[i] - float(stop[f"min_load_{i + 1}_N"])) / 1e3)
+            load.append(abs(result.max_wheel_load_N[i] - float(stop[f"max_load_{i + 1}_N"])) / 1e3)
+    return {"distance": max(distance), "load_kN": max(load)}
+
+
+# The tables of "What stays of Figure 3": speed -> torque -> heading -> cell.
+
+
+def figure_3_tables():
+    tables = {}
+    for speed, table in re.findall(r"^(\d+) km/h\n\n((?:\|.*\n)+)", text_of(FIGURE_3), re.MULTILINE):
+        heading, _, *lines = ([cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines())
+        heading[6:] = ["least modal computed", "least shallow"]
+        tables[int(speed)] = {float(line[0]): dict(zip(heading, line, strict=True)) for line in lines}
+    return tables
+
+
+def number(cell):
+    """A distance; None where the stop has no answer."""
+    return None if cell == "overturned" else float(cell.removesuffix(" *"))
+
+
+def best(speed, load):
+    """Most effective torque and its distance."""
+    found = {torque: number(line[load]) for torque, line in figure_3_tables()[speed].items()}
+    torque = min((torque for torque in found if found[torque] is not None), key=found.get)
+    return torque, found[torque]
+
+
+def more(speed, load, *torques):
+    """How much longer than the solid's a distance is at each torque, in per cent."""
+    table = figure_3_tables()[speed]
+    return [100 * (number(table[torque][load]) / number(table[torque]["rigid"]) - 1) for torque in torques]
+
+
+def tipped(speed, load):
+    """Torques without an answer."""
+    return [torque for torque, line in figure_3_tables()[speed].items() if number(line[load]) is None]
+
+
+def upright(load):
+    """How many stops have an answer."""
+    return sum(number(line[load]) is not None for table in figure_3_tables().values() for line in table.values())
+
+
+def least(words, low, high):
+    """Least wheel loads from one torque to another, at both speeds."""
+    tables = figure_3_tables().values()
+    return [
+        float(line[f"least {words}"]) for table in tables for torque, line in table.items() if low <= torque <= high
+    ]
+
+
+def in_range():
+    """Torque that keeps every linear stop in its range; torque and speed of the one more with computed coefficients."""
+    inside = {
+        (load, torque, speed)
+        for speed, table in figure_3_tables().items()
+        for torque, line in table.items()
+        for load in ("modal, printed", "modal, computed")
+        if "*" not in line[load] and number(line[load]) is not None
+    }
+    (gentle,) = {torque for load, torque, _ in inside if load == "modal, printed"}
+    (other,) = {place for place in inside if place[1] != gentle}
+    return gentle, *other[1:]
