@@ -19,10 +19,12 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from slosh_cli.report import figures
 from slosh_cli.report.figures import FORMATS, INK, MUTED, STYLE
+from slosh_cli.report.label_places import spread
 from slosh_cli.results.files import replacing
 from slosh_cli.results.result import Status
 
@@ -106,26 +108,40 @@ def braking_distance(page: Page) -> Figure:
     """Braking distance against what varies, one panel beside the other, one curve per model of the load."""
     columns = min(len(page.panels), 3 if len(page.panels) != 4 else 2)
     lines = math.ceil(len(page.panels) / columns)
-    width, height = max(5.2 * columns, 7.0), 4.6 * lines + 1.75
+    looks = _looks(page)
+    handles = _legend(page, looks)
+    width = max(5.2 * columns, 7.0)
+    beside = _beside(handles, width)
+    header = 1.35 + 0.28 * (math.ceil(len(handles) / beside) - 1)
+    height = 4.6 * lines + 0.4 + header
     figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, WIDTH / width))
     figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
     words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
     figure.text(0.014, 1.0 - 0.5 / height, words, fontsize=12.5, color=MUTED, va="top", parse_math=False)
-    figure.set_layout_engine("constrained", rect=(0.008, 0.006, 0.984, 1.0 - 1.35 / height))
+    figure.set_layout_engine("constrained", rect=(0.008, 0.006, 0.984, 1.0 - header / height))
     grid = figure.subplots(lines, columns, squeeze=False)
     panels = grid.ravel()
-    looks = _looks(page)
-    for axes, panel in zip(panels, page.panels, strict=False):
-        _draw_panel(axes, page, panel, looks)
+    labels = {axes: _draw_panel(axes, page, panel, looks) for axes, panel in zip(panels, page.panels, strict=False)}
     for axes in panels[len(page.panels) :]:
         axes.set_axis_off()
     for axes in grid[:, 0]:
         axes.set_ylabel("braking distance / m")
     figure.legend(
-        handles=_legend(page, looks), loc="upper left", ncols=6, columnspacing=1.5, handletextpad=0.6,
+        handles=handles, loc="upper left", ncols=beside, columnspacing=1.5, handletextpad=0.6,
         bbox_to_anchor=(0.006, 1.0 - 0.82 / height), borderaxespad=0.0,
     )  # fmt: skip
+    figure.draw_without_rendering()  # only now is it known where everything lies
+    for axes, panel in zip(panels, page.panels, strict=False):
+        answered = [(mark.x, mark.distance) for marks in panel.curves.values() for mark in marks]
+        spread(axes, labels[axes], [place for place in answered if place[1] is not None])
     return figure
+
+
+def _beside(handles: Sequence[Line2D], width: float) -> int:
+    """How many entries of the legend find room beside each other on `width` inches."""
+    widest = max(len(str(handle.get_label())) for handle in handles)
+    room = int(width / (0.08 * widest + 0.75))
+    return len(handles) if sum(0.08 * len(str(h.get_label())) + 0.75 for h in handles) < width else max(1, room)
 
 
 def _looks(page: Page) -> dict[str, dict[str, Any]]:
@@ -135,14 +151,16 @@ def _looks(page: Page) -> dict[str, dict[str, Any]]:
     return {model: LOOKS[1] if model == SOLID else next(others) for model in models}
 
 
-def _draw_panel(axes: Axes, page: Page, panel: Panel, looks: dict[str, dict[str, Any]]) -> None:
+def _draw_panel(axes: Axes, page: Page, panel: Panel, looks: dict[str, dict[str, Any]]) -> list[Annotation]:
+    """Draw the curves; returns the names of their lowest points."""
     for model, marks in sorted(panel.curves.items(), key=lambda curve: curve[0] != SOLID):  # the solid lies below
         _draw_curve(axes, marks, looks[model])
         _draw_unanswered(axes, marks, looks[model])
     _scale(axes, panel)
+    labels = []
     for model, marks in panel.curves.items():
         others = [mark for other, found in panel.curves.items() if other != model for mark in found]
-        _mark_best(axes, page, marks, looks[model], others)
+        labels += _mark_best(axes, page, marks, looks[model], others)
     axes.set_title(panel.title, fontsize=13, fontweight="bold", loc="left", color=INK)
     axes.set_xlabel(page.label)
     if page.ticks:
@@ -150,6 +168,7 @@ def _draw_panel(axes: Axes, page: Page, panel: Panel, looks: dict[str, dict[str,
     places = [mark.x for marks in panel.curves.values() for mark in marks]
     room = 0.05 * (max(places) - min(places)) or 0.5
     axes.set_xlim(min(places) - room, max(places) + room)
+    return labels
 
 
 def _draw_curve(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None:
@@ -212,11 +231,13 @@ def _scale(axes: Axes, panel: Panel) -> None:
     axes.tick_params(axis="y", which="minor", length=0)
 
 
-def _mark_best(axes: Axes, page: Page, marks: Sequence[Mark], look: dict[str, Any], others: Sequence[Mark]) -> None:
-    """Ring and name the lowest point of a curve, below it where no other curve is in the way."""
+def _mark_best(
+    axes: Axes, page: Page, marks: Sequence[Mark], look: dict[str, Any], others: Sequence[Mark]
+) -> list[Annotation]:
+    """Ring and name the lowest point of a curve, below it where no other curve is in the way; returns the name."""
     answered = [(mark.distance, mark.x) for mark in marks if mark.distance is not None]
     if len(answered) < 2:
-        return
+        return []
     distance, x = min(answered)
     axes.plot(
         [x], [distance], marker="o", markersize=15.0, markerfacecolor="none", color=look["color"],
@@ -224,10 +245,11 @@ def _mark_best(axes: Axes, page: Page, marks: Sequence[Mark], look: dict[str, An
     )  # fmt: skip
     below = not any(mark.x == x and mark.distance is not None and mark.distance < distance for mark in others)
     place = page.ticks[round(x)] if page.ticks else f"{x:g} {page.unit}".rstrip()
-    axes.annotate(
+    label = axes.annotate(
         f"{place}\n{distance:.4g} m", (x, distance), xytext=(0, -13 if below else 13), textcoords="offset points",
         ha="center", va="top" if below else "bottom", color=look["color"], fontsize=11.5, linespacing=1.15, zorder=5,
     )  # fmt: skip
+    return [label]
 
 
 def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:

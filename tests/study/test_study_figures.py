@@ -69,6 +69,18 @@ def test_no_line_leads_to_a_stop_without_an_answer_and_dotted_ones_to_those_outs
     assert OUTSIDE != "-"
 
 
+def test_the_legend_of_three_models_stays_on_the_page() -> None:
+    given = page()
+    panels = [Panel(one.title, {**one.curves, "shallow-water": one.curves["rigid"]}) for one in given.panels]
+    figure = braking_distance(page(panels=panels))
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert [text.get_text() for text in legend.get_texts()][-1] == "most effective torque"
+    assert figure.bbox.x0 <= box.x0
+    assert box.x1 <= figure.bbox.x1
+    assert box.y0 >= max(axes.title.get_window_extent().y1 for axes in figure.axes)
+
+
 def test_a_stop_without_an_answer_is_a_cross_at_the_top_in_the_colour_of_its_curve() -> None:
     axes = braking_distance(page()).axes[0]
     (cross,) = lines(axes, BLUE, "x")
