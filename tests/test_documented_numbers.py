@@ -75,7 +75,10 @@ def test_an_entry_fits_its_document(entry):
     if "given" in entry:
         return
     named = entry.get("named", entry["command"])
-    assert place_of(named, text_of(entry["in"])), f"{entry['in']} must name the command {named!r}"
+    if entry["in"].endswith(".toml"):
+        assert named == f"slosh validate {Path(entry['in']).stem}"
+    else:
+        assert place_of(named, text_of(entry["in"])), f"{entry['in']} must name the command {named!r}"
     assert len(entry["told"]) == len(numbers_in(entry["text"])), numbers_in(entry["text"])
 
 
@@ -149,6 +152,8 @@ def test_a_number_is_what_its_command_gives(entry, answered):
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", runs(slow=True))
 def test_a_number_is_what_its_slow_command_gives(entry, answered):
+    if "second-code" in entry["command"]:
+        pytest.importorskip("exudyn")
     compare(entry, answered(entry["command"]))
 
 
@@ -186,14 +191,25 @@ def test_the_tables_of_figure_3(tmp_path):
 
 def row(answer, words):
     """Value of the row of a validation case with `words` in its quantity."""
-    (found,) = [one["value"] for case in answer["cases"] for one in case["rows"] if words in one["quantity"]]
+    return the_row(answer, words)["value"]
+
+
+def the_row(answer, words):
+    rows = [one for case in answer["cases"] for one in case["rows"]]
+    exactly = [one for one in rows if one["quantity"] == words]
+    (found,) = exactly or [one for one in rows if words in one["quantity"]]
     return found
 
 
 def excess(answer, words):
     """How far the value of that row lies above its reference, as a part of it."""
-    (found,) = [one for case in answer["cases"] for one in case["rows"] if words in one["quantity"]]
+    found = the_row(answer, words)
     return found["value"] / found["reference"] - 1
+
+
+def percent(text):
+    """The last percentage in a sentence."""
+    return float(re.findall(r"([\d.]+) %", text)[-1])
 
 
 def check(answer, name):
