@@ -1,7 +1,5 @@
 """A whole scenario: a tank wagon on a track and its stop, or a tank alone."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -53,8 +51,8 @@ class Scenario(Root):
     track: Track = Field(description="The track under one rail.")
     contact: Contact = Field(description="The contact of wheel and rail.")
     braking: Braking = Field(description="The stop: speed, torque and when.")
-    solver: Solver = Field(default=Solver(), description="Accuracy and patience.")
-    output: Output = Field(default=Output(), description="What is written.")
+    solver: Solver = Field(default=Solver.model_construct(), description="Accuracy and patience.")
+    output: Output = Field(default=Output.model_construct(), description="What is written.")
 
 
 def json_schema() -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """Track, contact, braking, solver and output: everything of a stop that is neither wagon nor tank."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
@@ -83,8 +81,8 @@ class Adhesion(Part):
 
 
 ADHESIONS: dict[str, Adhesion] = {
-    "dry": Adhesion(mu0=0.55, A=0.40, B=0.60, kA=1.00, kS=0.40),
-    "wet": Adhesion(mu0=0.30, A=0.40, B=0.20, kA=0.30, kS=0.10),
+    "dry": Adhesion.model_construct(mu0=0.55, A=0.40, B=0.60, kA=1.00, kS=0.40),
+    "wet": Adhesion.model_construct(mu0=0.30, A=0.40, B=0.20, kA=0.30, kS=0.10),
 }
 """Polach's sets for dry and wet rail (Wear 258, 2005)."""
 

@@ -1,7 +1,5 @@
 """The tank: shape, filling, liquid and slosh coefficients."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag

@@ -1,7 +1,5 @@
 """The wagon: bodies, suspension, running resistance. Values are of the whole wagon unless a text says not."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import Field

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
@@ -76,41 +76,50 @@ _DEFINITIONS: Final[dict[str, str]] = {
 
 @dataclass(frozen=True)
 class Dimension:
-    """A kind of quantity: what it is called and the units to suggest, the SI unit among them as `unit`."""
+    """A kind of quantity: what it is called, its SI unit, and the units to suggest with their factors to SI.
+
+    Quantities in these units, which is nearly all there are, are read without pint: it takes longer to load
+    than `slosh check` takes for everything else.
+    """
 
     name: str
     noun: str
     unit: str
-    units: tuple[str, ...]
+    factors: Mapping[str, float]
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The units to suggest, the SI unit among them."""
+        return tuple(self.factors)
 
 
-def _dimension(name: str, noun: str, unit: str, *units: str) -> Dimension:
-    return Dimension(name, noun, unit, units or (unit,))
+def _dimension(name: str, noun: str, unit: str, factors: Mapping[str, float] | None = None) -> Dimension:
+    return Dimension(name, noun, unit, factors or {unit: 1.0})
 
 
 DIMENSIONS: Final[dict[str, Dimension]] = {
     entry.name: entry
     for entry in (
-        _dimension("mass", "a mass", "kg", "kg", "t"),
-        _dimension("length", "a length", "m", "m", "mm"),
-        _dimension("time", "a time", "s", "s", "ms"),
-        _dimension("speed", "a speed", "m/s", "km/h", "m/s"),
-        _dimension("acceleration", "an acceleration", "m/s^2", "m/s^2", "g"),
-        _dimension("angular_frequency", "an angular frequency", "rad/s", "rad/s", "Hz"),
-        _dimension("force", "a force", "N", "N", "kN"),
-        _dimension("torque", "a torque", "N m", "kN m", "N m"),
-        _dimension("modulus", "an elastic modulus", "Pa", "GPa", "Pa"),
+        _dimension("mass", "a mass", "kg", {"kg": 1.0, "t": 1e3}),
+        _dimension("length", "a length", "m", {"m": 1.0, "mm": 1e-3}),
+        _dimension("time", "a time", "s", {"s": 1.0, "ms": 1e-3}),
+        _dimension("speed", "a speed", "m/s", {"km/h": 1 / 3.6, "m/s": 1.0}),
+        _dimension("acceleration", "an acceleration", "m/s^2", {"m/s^2": 1.0, "g": STANDARD_GRAVITY}),
+        _dimension("angular_frequency", "an angular frequency", "rad/s", {"rad/s": 1.0, "Hz": 2 * math.pi}),
+        _dimension("force", "a force", "N", {"N": 1.0, "kN": 1e3}),
+        _dimension("torque", "a torque", "N m", {"kN m": 1e3, "N m": 1.0}),
+        _dimension("modulus", "an elastic modulus", "Pa", {"GPa": 1e9, "Pa": 1.0}),
         _dimension("density", "a density", "kg/m^3"),
         _dimension("mass_per_length", "a mass per length", "kg/m"),
         _dimension("first_moment", "a mass times a length", "kg m"),
         _dimension("moment_of_inertia", "a moment of inertia", "kg m^2"),
-        _dimension("second_moment", "a second moment of area", "m^4", "m^4", "cm^4"),
-        _dimension("stiffness", "a stiffness", "N/m", "N/m", "kN/m"),
-        _dimension("damping", "a force per speed", "N s/m", "N s/m", "kN s/m"),
+        _dimension("second_moment", "a second moment of area", "m^4", {"m^4": 1.0, "cm^4": 1e-8}),
+        _dimension("stiffness", "a stiffness", "N/m", {"N/m": 1.0, "kN/m": 1e3}),
+        _dimension("damping", "a force per speed", "N s/m", {"N s/m": 1.0, "kN s/m": 1e3}),
         _dimension("quadratic_resistance", "a force per squared speed", "N s^2/m^2"),
-        _dimension("stiffness_per_length", "a stiffness per length", "N/m^2", "N/m^2", "MN/m^2"),
-        _dimension("damping_per_length", "a damping per length", "N s/m^2", "N s/m^2", "kN s/m^2"),
-        _dimension("shear_damping", "a shear damping", "N s", "N s", "kN s"),
+        _dimension("stiffness_per_length", "a stiffness per length", "N/m^2", {"N/m^2": 1.0, "MN/m^2": 1e6}),
+        _dimension("damping_per_length", "a damping per length", "N s/m^2", {"N s/m^2": 1.0, "kN s/m^2": 1e3}),
+        _dimension("shear_damping", "a shear damping", "N s", {"N s": 1.0, "kN s": 1e3}),
         _dimension("contact_stiffness", "a Hertzian contact stiffness", "N/m^1.5"),
         _dimension("inverse_speed", "an inverse speed", "s/m"),
     )
@@ -127,7 +136,7 @@ _LONGEST: Final = 200
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[Any]:
     """The lean registry, built at first use so that importing this module stays cheap."""
-    import pint  # 0.2 s that only commands which read a quantity should pay
+    import pint  # 0.2 s, and only a unit that is in no table of DIMENSIONS needs it
 
     registry: pint.UnitRegistry[Any] = pint.UnitRegistry(None)
     for name, definition in _DEFINITIONS.items():
@@ -156,8 +165,9 @@ def _dimensionality(dimension: Dimension) -> Any:
 
 def convert(value: float, unit: str, dimension: str) -> float:
     """`value` in `unit` as an SI float. ValueError when the unit is unknown or of another dimension."""
-    if dimension == "acceleration" and unit == "g":
-        return value * STANDARD_GRAVITY
+    known = DIMENSIONS[dimension].factors.get(unit)
+    if known is not None:
+        return value * known
     factor, dimensionality = _unit(unit)
     if dimensionality != _dimensionality(DIMENSIONS[dimension]):
         raise ValueError(unit)
