@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slosh_cli.cli import main as slosh
-from slosh_cli.report.figures import STYLE
+from slosh_cli.report.saving import STYLE
 from slosh_cli.results.simulate import simulate
 from slosh_cli.scenario import find_packaged, load_scenario
 from slosh_cli.study.claims import verdicts

@@ -61,7 +61,8 @@ def write_run(result: "Result", folder: Path, *, figures: bool) -> dict[str, Any
 
     Files of an earlier run stay as they were until the new ones are whole.
     """
-    from slosh_cli.report.figures import FIGURES, FORMATS, draw_run
+    from slosh_cli.report.figures import FIGURES, draw_run
+    from slosh_cli.report.saving import FORMATS
     from slosh_cli.results.files import staging
     from slosh_cli.results.hdf5 import write_history
     from slosh_cli.results.tables import write_summary

@@ -1,15 +1,13 @@
-"""Figures of a run, as PNG and SVG. The only module that imports matplotlib.
+"""Figures of a run, as PNG and SVG.
 
 Every line differs from its neighbours in line style and in lightness, not in colour alone.
 """
 
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -23,10 +21,9 @@ from slosh_cli.report.record import (
     locked_stretches,
     slip_percent,
 )
+from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
-from slosh_cli.results.files import replacing
 
-FORMATS: Final = ("png", "svg")
 RESOLUTION: Final = 200  # dots per inch
 CAPTION_WIDTH: Final = 126  # characters
 
@@ -39,27 +36,7 @@ WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
 ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
 FRONT: Final[dict[str, Any]] = {"color": "#08306b", "linestyle": "-"}
 REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
-INK: Final = "#222222"
-MUTED: Final = "#777777"
 ALARM: Final = "#a50f15"
-
-STYLE: Final[dict[Any, Any]] = {
-    "font.size": 13,
-    "axes.labelsize": 13,
-    "axes.edgecolor": MUTED,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.8,
-    "legend.frameon": False,
-    "legend.fontsize": 11.5,
-    "legend.handlelength": 2.5,
-    "lines.linewidth": 1.6,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "slosh",
-}
 
 
 def draw_run(record: Record, folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
@@ -67,12 +44,13 @@ def draw_run(record: Record, folder: Path, formats: Sequence[str] = FORMATS) -> 
 
     Each file appears whole or not at all. Raises FileError when one cannot be written.
     """
-    return [
-        file
-        for name, draw in FIGURES.items()
-        if name != "slosh" or has_liquid(record)
-        for file in _save(draw, record, folder, name, formats)
-    ]
+    with styled():
+        return [
+            file
+            for name, draw in FIGURES.items()
+            if name != "slosh" or has_liquid(record)
+            for file in save(draw(record), folder, name, formats)
+        ]
 
 
 def contact_forces(record: Record) -> Figure:
@@ -254,25 +232,3 @@ def _draw_amplitudes(record: Record, axes: Axes, modes: Sequence[int]) -> None:
     axes.set_ylabel("modal\namplitude / m")
     if len(modes) > 1:
         _legend(axes, columns=6)
-
-
-def _save(
-    draw: Callable[[Record], Figure], record: Record, folder: Path, name: str, formats: Sequence[str]
-) -> Iterator[Path]:
-    with _style():
-        figure = draw(record)
-        for suffix in formats:
-            file = folder / f"{name}.{suffix}"
-            metadata = {"Date": None} if suffix == "svg" else None
-            with replacing(file) as temporary:
-                figure.savefig(temporary, format=suffix, metadata=metadata)
-            yield file
-
-
-@contextmanager
-def _style() -> Iterator[None]:
-    """This program's style, whatever the user's matplotlib settings are, for the length of the block."""
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(STYLE)
-        yield

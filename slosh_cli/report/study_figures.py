@@ -15,7 +15,6 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
-import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -23,9 +22,8 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from slosh_cli.report import figures
-from slosh_cli.report.figures import FORMATS, INK, MUTED, STYLE
 from slosh_cli.report.label_places import spread
-from slosh_cli.results.files import replacing
+from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
 from slosh_cli.results.result import Status
 
 NAME: Final = "braking_distance"
@@ -89,15 +87,10 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
     Raises FileError when one cannot be written.
     """
     files = []
-    with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
+    with styled():
         for number, page in enumerate(pages, start=1):
-            figure = braking_distance(page)
             name = NAME if len(pages) == 1 else f"{NAME}_{number}"
-            for suffix in formats:
-                file = folder / f"{name}.{suffix}"
-                with replacing(file) as temporary:
-                    figure.savefig(temporary, format=suffix, metadata={"Date": None} if suffix == "svg" else None)
-                files.append(file)
+            files += save(braking_distance(page), folder, name, formats)
     for file in folder.iterdir():
         if file not in files and _OURS.fullmatch(file.name):
             file.unlink(missing_ok=True)
@@ -131,6 +124,7 @@ def braking_distance(page: Page) -> Figure:
         bbox_to_anchor=(0.006, 1.0 - 0.82 / height), borderaxespad=0.0,
     )  # fmt: skip
     figure.draw_without_rendering()  # only now is it known where everything lies
+    figure.set_layout_engine("none")
     for axes, panel in zip(panels, page.panels, strict=False):
         answered = [(mark.x, mark.distance) for marks in panel.curves.values() for mark in marks]
         spread(axes, labels[axes], [place for place in answered if place[1] is not None])

@@ -11,15 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from slosh_cli.report import figures
-from slosh_cli.report.figures import FORMATS, FRONT, INK, MUTED, REAR, STYLE
-from slosh_cli.results.files import replacing
+from slosh_cli.report.figures import FRONT, REAR
+from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
 from slosh_cli.tank.mesh import Floats
 from slosh_cli.tank.section import TankGeometry, section_of
 
@@ -52,24 +51,24 @@ def draw_excitation(
     excitation: Excitation, heading: Heading, room: float, folder: Path, formats: Sequence[str] = FORMATS
 ) -> list[Path]:
     """Deceleration, force, moment and surface against time; `room` (m) is the roof's height over the still level."""
-    with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
-        return _save(excitation_figure(excitation, heading, room), folder, EXCITATION, formats)
+    with styled():
+        return save(excitation_figure(excitation, heading, room), folder, EXCITATION, formats)
 
 
 def draw_mode(
     mode: LongitudinalMode, tank: TankGeometry, heading: Heading, folder: Path, formats: Sequence[str] = FORMATS
 ) -> list[Path]:
     """A mode over the cross-section and along the tank; the files are named `mode_1`, `mode_3`, ... by n."""
-    with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
-        return _save(mode_figure(mode, tank, heading), folder, f"mode_{mode.n}", formats)
+    with styled():
+        return save(mode_figure(mode, tank, heading), folder, f"mode_{mode.n}", formats)
 
 
 def draw_chart(
     chart: FillChart, heading: Heading, fill: float, folder: Path, formats: Sequence[str] = FORMATS
 ) -> list[Path]:
     """Frequency, mass fraction and height against the filling; `fill` is the tank's own."""
-    with mpl.rc_context({**mpl.rcParamsDefault, **STYLE}):
-        return _save(chart_figure(chart, heading, fill), folder, CHART, formats)
+    with styled():
+        return save(chart_figure(chart, heading, fill), folder, CHART, formats)
 
 
 def excitation_figure(excitation: Excitation, heading: Heading, room: float) -> Figure:
@@ -203,13 +202,3 @@ def _headed(heading: Heading, size: tuple[float, float], head: float = 0.95) -> 
 
 def _shortened(text: str, length: int) -> str:
     return text if len(text) <= length else text[: length - 1] + "…"
-
-
-def _save(figure: Figure, folder: Path, name: str, formats: Sequence[str]) -> list[Path]:
-    files = []
-    for suffix in formats:
-        file = folder / f"{name}.{suffix}"
-        with replacing(file) as temporary:
-            figure.savefig(temporary, format=suffix, metadata={"Date": None} if suffix == "svg" else None)
-        files.append(file)
-    return files

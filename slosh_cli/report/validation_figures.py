@@ -10,12 +10,10 @@ from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from slosh_cli.report.figures import FORMATS, STYLE
-from slosh_cli.results.files import replacing
+from slosh_cli.report.saving import save, styled
 
 if TYPE_CHECKING:
     from slosh_cli.validation.chart import Chart, Curve, Panel
@@ -37,18 +35,8 @@ EXACT: Final[tuple[str, ...]] = ("#bdbdbd", "#d9c7a8", "#c6d6e8")
 
 def draw_case(name: str, title: str, chart: Chart, folder: Path) -> list[Path]:
     """Draw the figure of a case into `folder`; returns the files. Each appears whole or not at all."""
-    files = []
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(STYLE)
-        figure = case_figure(title, chart)
-        for suffix in FORMATS:
-            file = folder / f"{name}.{suffix}"
-            metadata = {"Date": None} if suffix == "svg" else None
-            with replacing(file) as temporary:
-                figure.savefig(temporary, format=suffix, metadata=metadata)
-            files.append(file)
-    return files
+    with styled():
+        return save(case_figure(title, chart), folder, name)
 
 
 def case_figure(title: str, chart: Chart) -> Figure:
