@@ -33,7 +33,7 @@ class Liquid(Part):
     cells: Annotated[int, Count(10, 2000)] = Field(
         default=120, description="Finite volumes along the tank; only the shallow-water model uses them."
     )
-    slot_speed: Annotated[float, Quantity("speed", Range(5.0, 1500.0), "30 m/s")] = Field(
+    slot_speed: Annotated[float, Quantity("speed", Range(5.0, 100.0), "30 m/s")] = Field(
         default=30.0,
         description="Speed of pressure waves where the section runs full (shallow-water), m/s: higher is stiffer.",
     )

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section import Section
+from slosh_cli.tank.section import PolygonalSection, Section
 
 Array = NDArray[np.float64]
 NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""
+LEDGE = 1e-9
+"""Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
 
 
 class SectionTable(NamedTuple):
@@ -45,11 +47,23 @@ def _slot_start(section: Section, slot_width: float) -> float:
     return section.height if first == 0 else float(depths[first])
 
 
+def _nodes(section: Section, top: float) -> Array:
+    """Depths (m) of the table up to `top`; a polygon's corners are among them, so that no interval has one inside."""
+    depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, NODES)))
+    if not isinstance(section, PolygonalSection):
+        return depth
+    beside = LEDGE * section.height
+    levels = {z for _, z in section.points}
+    corners = [z + side for z in levels for side in (-beside, beside) if beside < z + side < top - beside]
+    apart = [z for z in depth[1:-1] if all(abs(z - corner) > 10 * beside for corner in corners)]
+    return np.asarray(sorted([0.0, *apart, *corners, top]), dtype=np.float64)
+
+
 def section_table(section: Section, gravity: float, slot_speed: float) -> SectionTable:
     """Tabulate `section`; pressure waves in the full section run at `slot_speed` (m/s). Gravity in m/s^2."""
     slot_width = gravity * section.area(section.height) / slot_speed**2
     top = _slot_start(section, slot_width)
-    depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, NODES)))
+    depth = _nodes(section, top)
     area = np.array([section.area(float(h)) for h in depth])
     centroid = np.array([section.centroid_height(float(h)) for h in depth])
     second = np.array([section.second_moment(float(h)) for h in depth]) + area * centroid**2

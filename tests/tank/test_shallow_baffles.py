@@ -31,15 +31,16 @@ def test_an_opening_of_the_whole_wall_is_no_wall():
     assert np.array_equal(with_wall.flow, without.flow)
 
 
-def test_a_wall_that_is_nearly_open_tends_to_none_with_the_cells():
+def test_a_wall_that_is_nearly_open_tends_to_none_with_its_loss():
+    without = moving(walled(None))
+    without.advance(-1.0, 4.0)
     gaps = []
-    for cells in (120, 240, 480):
-        with_wall, without = moving(walled(0.999, cells)), moving(walled(None, cells))
+    for opening in (0.99, 0.999, 0.9999):
+        with_wall = moving(walled(opening))
         with_wall.advance(-1.0, 4.0)
-        without.advance(-1.0, 4.0)
-        gaps.append(np.abs(with_wall.depth - without.depth).mean())
-    assert gaps[0] < 0.01
-    assert gaps[0] > 1.6 * gaps[1] > 2.5 * gaps[2]
+        gaps.append(np.abs(with_wall.depth - without.depth).mean() / baffle_loss(opening))
+    assert gaps == pytest.approx([gaps[2]] * 3, rel=0.1)
+    assert gaps[2] < 0.2
 
 
 def test_a_nearly_closed_wall_makes_two_tanks_of_half_the_period():
@@ -103,13 +104,11 @@ def test_momentum_and_mass_balance_with_baffles(walls):
 @pytest.mark.parametrize("opening", [0.9, 0.3, 0.01])
 def test_a_baffle_never_feeds_energy(opening):
     tank = swinging(walled(opening), 1.5)
-    energies, kinetic = [tank.energy], tank.energy - moving(tank.liquid).energy
+    energies = [tank.energy]
     for _ in range(150):
         tank.advance(0.0, 0.05)
         energies.append(tank.energy)
-    # the start through a wall that is nearly open gains 3e-4 once, in the first 50 ms
-    assert np.all(np.diff(energies)[1:] <= 0.0)
-    assert energies[1] - energies[0] < 5e-4 * kinetic
+    assert np.all(np.diff(energies) <= 0.0)
 
 
 def test_a_still_tilted_surface_stays_still_across_a_baffle():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shallow_tools import BOX, CIRCLE, HEXAGON, SECTIONS, G, areas, dam, liquid_in, moving, places
+from shallow_tools import BOX, CIRCLE, HEXAGON, SECTIONS, TROUGH, G, areas, dam, liquid_in, moving, places
 
 TILTED = {"slightly": 0.04, "strongly": 0.3}
 """Rise at a wall over the height of the section."""
@@ -38,46 +38,53 @@ def test_a_still_tilted_surface_that_touches_the_roof_stays_still():
     assert np.abs(tank.area - area).max() < 1e-11
 
 
-STEPS = [(name, fill) for name in SECTIONS for fill in (0.1, 0.5, 0.98)]
+STEPS = [(name, fill, G) for name in SECTIONS for fill in (0.1, 0.2, 0.5, 0.8, 0.98)]
+STEPS += [(name, 0.8, 1.5) for name in SECTIONS]
 
 
-@pytest.mark.parametrize(("name", "fill"), STEPS)
-def test_dry_bed_and_full_pipe_survive_a_1_g_step(name, fill):
-    """Acceptance. Nothing but work feeds the energy: `loss >= 0` to the truncation error of a step."""
-    section = SECTIONS[name]
-    liquid = liquid_in(section, 120, fill * section.height)
-    tank = moving(liquid)
+def stepped(section, fill, deceleration, cells, outputs, duration):
+    """A liquid under a step of deceleration: the tank, its energies, and at every output what the work missed (J)."""
+    tank = moving(liquid_in(section, cells, fill * section.height))
     mass, energies, losses = tank.area.sum(), [tank.energy], []
-    for _ in range(80):
-        work = tank.advance(-G, 0.1)[2]
+    for _ in range(outputs):
+        work = tank.advance(-deceleration, duration / outputs)[2]
         energies.append(tank.energy)
         losses.append(work - (energies[-1] - energies[-2]))
         assert tank.area.sum() == pytest.approx(mass, rel=1e-12)
-    largest = max(energies)
-    assert min(losses) > -1e-3 * largest
-    assert sum(losses) > 0.0
+    return tank, np.array(energies), np.array(losses)
+
+
+@pytest.mark.parametrize(("name", "fill", "deceleration"), STEPS)
+def test_dry_bed_and_full_pipe_survive_a_1_g_step(name, fill, deceleration):
+    """Acceptance. Nothing but work feeds the energy: `loss >= 0` to the truncation error of a step.
+
+    A tenth of the trough's height is a hundredth of its area and needs twice the cells for that.
+    """
+    section = SECTIONS[name]
+    cells = 240 if (name, fill) == ("trough", 0.1) else 120
+    tank, energies, losses = stepped(section, fill, deceleration, cells, 80, 8.0)
+    assert losses.min() > -3e-4 * energies.max()
+    assert losses.sum() > 0.0
     if fill == 0.1:
         assert tank.area.min() < 1e-3 * section.area(section.height)
-    if fill == 0.98:
+    if fill == 0.98 or deceleration < G:
         assert tank.depth.max() > section.height
 
 
-THIN = [(BOX, 0.02, 60), (HEXAGON, 0.1, 60), (CIRCLE, 0.02, 60), (BOX, 0.02, 120), (HEXAGON, 0.1, 120)]
+THIN = [(BOX, 0.02), (HEXAGON, 0.1), (CIRCLE, 0.02), (TROUGH, 0.1)]
 
 
-@pytest.mark.parametrize(("section", "fill", "cells"), THIN)
-def test_a_thin_layer_gains_no_energy_from_a_1_g_step(section, fill, cells):
-    """The still tilt (g over g) drops by more than the layer's depth within one cell."""
-    liquid = liquid_in(section, cells, fill * section.height)
-    tank = moving(liquid)
-    energies, losses = [tank.energy], []
-    for _ in range(60):
-        work = tank.advance(-G, 0.05)[2]
-        energies.append(tank.energy)
-        losses.append(work - (energies[-1] - energies[-2]))
-    # no part of the liquid can have fallen further than from the rear wall to the front one
-    assert max(energies) < liquid.mass * G * (15.5 + 2 * section.height)
-    assert min(losses) > -2e-3 * max(energies)
+@pytest.mark.parametrize(("section", "fill"), THIN)
+def test_a_thin_layer_gains_no_energy_from_a_1_g_step(section, fill):
+    """The still tilt (g over g) drops by more than the layer's depth within one cell; what is missed is truncation."""
+    missed = []
+    for cells in (60, 120, 240):
+        tank, energies, losses = stepped(section, fill, G, cells, 80, 4.0)
+        # no part of the liquid can have fallen further than from the rear wall to the front one
+        assert energies.max() < tank.liquid.mass * G * (15.5 + 2 * section.height)
+        missed.append(-losses.min() / energies.max())
+    assert np.all(np.array(missed) < [1e-3, 3e-4, 6e-5]), missed
+    assert missed[0] > 2 * missed[1] > 6 * missed[2]
 
 
 def test_negative_losses_are_truncation_and_vanish_with_the_cells():

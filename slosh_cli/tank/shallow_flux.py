@@ -1,0 +1,168 @@
+"""Fluxes of the shallow-water liquid between its cells, at its walls and through its baffles.
+
+HLL fluxes (A. Harten, P. D. Lax and B. van Leer, SIAM Review 25 (1983) 35-61) of states reconstructed from the surface
+relative to the still tilted one, so that a still liquid stays still (E. Audusse et al., SIAM J. Sci. Comput. 25 (2004)
+2050-2065), with limited slopes.
+"""
+
+from __future__ import annotations
+
+import math
+
+from slosh_cli.compiled import kernel
+from slosh_cli.tank.section_table import pressure_height, section_at
+
+DRY = 1e-7
+"""A cell with less than this part of the full section's area holds still."""
+STEEPENED, MILD = 1.2, 0.5
+"""Slopes may be this much steeper than minmod's in waves whose slope, drawn out over the whole tank, would change depth
+and speed by much less than this part of the depth and of the waves' speed: minmod wears small waves down, but is the
+steadiest at bores."""
+
+
+@kernel
+def _limited(before, after, mild):
+    """Limited slope between two differences: minmod, where they are small beside `mild` a little steeper."""
+    if before * after <= 0.0:
+        return 0.0
+    least, mean = min(abs(before), abs(after)), 0.5 * abs(before + after)
+    if mean < mild:
+        least = min(least * (STEEPENED - (STEEPENED - 1.0) * mean / mild), mean)
+    return math.copysign(least, before)
+
+
+@kernel
+def _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r):
+    """HLL flux of mass (m^3/s) and momentum (m^4/s^2) between two states, and its fastest signal (m/s)."""
+    speed_l = flow_l / area_l if area_l > 0.0 else 0.0
+    speed_r = flow_r / area_r if area_r > 0.0 else 0.0
+    wave_l = math.sqrt(gravity * area_l / width_l)
+    wave_r = math.sqrt(gravity * area_r / width_r)
+    if area_l <= 0.0:
+        speed_l, wave_l = speed_r - 2.0 * wave_r, 0.0
+    if area_r <= 0.0:
+        speed_r, wave_r = speed_l + 2.0 * wave_l, 0.0
+    left = min(speed_l - wave_l, speed_r - wave_r)
+    right = max(speed_l + wave_l, speed_r + wave_r)
+    fastest = max(-left, right)
+    momentum_l = flow_l * (flow_l / area_l if area_l > 0.0 else 0.0) + gravity * pressure_l
+    momentum_r = flow_r * (flow_r / area_r if area_r > 0.0 else 0.0) + gravity * pressure_r
+    if left >= 0.0:
+        return flow_l, momentum_l, fastest
+    if right <= 0.0:
+        return flow_r, momentum_r, fastest
+    span = right - left
+    mass = (right * flow_l - left * flow_r + left * right * (area_r - area_l)) / span
+    momentum = (right * momentum_l - left * momentum_r + left * right * (flow_r - flow_l)) / span
+    return mass, momentum, fastest
+
+
+@kernel
+def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
+    """Limited changes over a cell of depth (m, the still tilt included) and speed (m/s)."""
+    cells, mild = liquid.cells, MILD / liquid.cells
+    tilt = acceleration * liquid.spacing / liquid.gravity
+    last = liquid.table.area.size - 1
+    dry, roof = DRY * liquid.table.area[last], liquid.table.depth[last]
+    for i in range(cells):
+        speed = flow[i] / area[i] if area[i] > dry else 0.0
+        surface_b = surface_a = 0.0
+        speed_b, speed_a = 2.0 * speed, -2.0 * speed
+        wet = area[i] > dry
+        if i > 0:
+            wet = wet and area[i - 1] > dry
+            surface_b = depth[i] - depth[i - 1] + tilt
+            speed_b = speed - (flow[i - 1] / area[i - 1] if area[i - 1] > dry else 0.0)
+        if i < cells - 1:
+            wet = wet and area[i + 1] > dry
+            surface_a = depth[i + 1] - depth[i] + tilt
+            speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
+        slope_depth[i] = slope_speed[i] = 0.0
+        if wet:
+            slope_depth[i] = _limited(surface_b, surface_a, mild * depth[i])
+            slope_speed[i] = _limited(speed_b, speed_a, mild * math.sqrt(liquid.gravity * depth[i]))
+        if abs(depth[i] - roof) < 0.5 * abs(slope_depth[i] - tilt):  # the surface meets the roof inside the cell
+            slope_depth[i] = slope_speed[i] = 0.0
+        # neither end of a cell lies below the bed
+        slope_depth[i] = min(max(slope_depth[i] - tilt, -2.0 * depth[i]), 2.0 * depth[i])
+
+
+@kernel
+def _baffle(gravity, loss, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r):
+    """Flow (m^3/s) through a baffle, momentum fluxes (m^4/s^2) on its rear and front side, fastest signal (m/s).
+
+    Between the fluxes of an open face and those on a closed wall, as the flow m lies between the open face's and none:
+    such a mean of two fluxes that feed no energy feeds none. The difference of momentum that is left across the baffle
+    is its loss, `0.5 loss m |m| / A` of the narrower side.
+    """
+    mass, open_, fastest = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r)
+    _, wall_l, fast_l = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
+    _, wall_r, fast_r = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
+    fastest = max(fastest, fast_l, fast_r)
+    narrow = min(area_l, area_r)
+    if narrow <= 0.0:
+        return 0.0, wall_l, wall_r, fastest
+    acoustic = (math.sqrt(gravity * area_l / width_l) + math.sqrt(gravity * area_r / width_r)) * abs(mass)
+    drive = max(math.copysign(1.0, mass) * (wall_l - wall_r), acoustic)
+    taken = 0.5 * loss / narrow * mass * mass
+    part = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * taken / drive)) if drive > 0.0 else 0.0
+    return part * mass, wall_l + part * (open_ - wall_l), wall_r + part * (open_ - wall_r), fastest
+
+
+@kernel
+def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source, push):
+    """Fluxes of mass and momentum through the faces (cells + 1,), and the momentum source (cells,) of the tilt.
+
+    `push` (2,) gets the force over density on all walls and baffles (m^4/s^2, forward) and its moment (m^5/s^2).
+    Returns the fastest signal (m/s).
+
+    `work` is (2, cells + 1) scratch. Cells run from the rear wall forward; the source balances the pressures of a still
+    tilted liquid to rounding.
+    """
+    cells, table, gravity = liquid.cells, liquid.table, liquid.gravity
+    slope_depth, slope_speed = work[0], work[1]
+    _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed)
+    dry = DRY * table.area[table.area.size - 1]
+    tilt = acceleration * liquid.spacing / gravity
+    area_b = flow_b = pressure_b = 0.0
+    width_b = 1.0
+    fastest = 1e-9
+    push[0] = push[1] = 0.0
+    for i in range(cells):
+        wet = area[i] > dry
+        speed = flow[i] / area[i] if wet else 0.0
+        below = max(depth[i] - 0.5 * slope_depth[i], 0.0) if wet else 0.0
+        above = max(depth[i] + 0.5 * slope_depth[i], 0.0) if wet else 0.0
+        area_l, pressure_l, width_l = section_at(table, below)
+        area_r, pressure_r, width_r = section_at(table, above)
+        flow_l = area_l * (speed - 0.5 * slope_speed[i])
+        flow_r = area_r * (speed + 0.5 * slope_speed[i])
+        jump = 0.0
+        if i == 0:  # the wall mirrors the state
+            area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
+        if liquid.loss[i] > 0.0:
+            mass[i], before, after, signal = _baffle(
+                gravity, liquid.loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+            )
+            momentum[i] = before
+            jump = after - before
+            push[0] -= jump
+            push[1] += before * pressure_height(table, depth[i - 1]) - after * pressure_height(table, depth[i])
+        else:
+            mass[i], momentum[i], signal = _hll(
+                gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+            )
+        fastest = max(fastest, signal)
+        surface_slope = slope_depth[i] + tilt
+        mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
+        source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / liquid.spacing
+        area_b, flow_b, pressure_b, width_b = area_r, flow_r, pressure_r, width_r
+    _, momentum[cells], signal = _hll(
+        gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b
+    )
+    mass[0] = mass[cells] = 0.0
+    push[0] += momentum[cells] - momentum[0]
+    push[1] += momentum[cells] * pressure_height(table, depth[cells - 1]) - momentum[0] * pressure_height(
+        table, depth[0]
+    )
+    return max(fastest, signal)
