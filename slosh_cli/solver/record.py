@@ -47,6 +47,22 @@ def _parabola(left, middle, right, part):
     return by_left * left + by_middle * middle + by_right * right
 
 
+@inner_kernel
+def _recorded_creep(model, state, row, wheel, normal, part):
+    """Creep force (N) of a wheel: the parabola through the stages' own, whose impulse is that of the equations.
+
+    A creepage interpolated between the stages would not do: the law makes much of little. Only where a wheel leaves the
+    rail or lands within the step does the law speak, with the `normal` force (N) of the row.
+    """
+    start, middle, end = state.start, state.middle, state.end
+    if min(start.normal[wheel], middle.normal[wheel], end.normal[wheel], normal) > 0.0:
+        return _parabola(start.creep[wheel], middle.creep[wheel], end.creep[wheel], part)
+    speed = row[SPEED_COLUMN]
+    slip = speed - model.wagon.wheel_radius * row[SPEED_COLUMN + WHEEL_SPIN + wheel]
+    creep, _, _, _ = creep_force(model.contact, normal, slip, speed)
+    return creep
+
+
 @kernel
 def record_row(model, state, row, time, step, part, phase):
     """Interpolate the step from `state.start` to `state.end` at its fraction `part` into `row`."""
@@ -62,8 +78,7 @@ def record_row(model, state, row, time, step, part, phase):
         under = model.rail.contact[i]
         rail = _hermite(start.rail[under], start.rail_rate[under], end.rail[under], end.rail_rate[under], step, part)
         normal, _ = normal_force(model.contact, rail - row[PLACE_COLUMN + WHEEL_HEAVE + i])
-        speed = row[SPEED_COLUMN]
-        creep, _, _, _ = creep_force(model.contact, normal, speed - radius * row[SPEED_COLUMN + WHEEL_SPIN + i], speed)
+        creep = _recorded_creep(model, state, row, i, normal, part)
         row[RAIL_COLUMN + i] = rail
         row[NORMAL_COLUMN + i] = normal
         row[CREEP_COLUMN + i] = creep

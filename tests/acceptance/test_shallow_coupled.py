@@ -98,6 +98,25 @@ def test_nothing_but_wheels_and_resistance_takes_momentum(stop, shipped, until, 
     assert start - whole_momentum(stop_, run.state) == pytest.approx(by_wheels + float(by_air), rel=5e-6)
 
 
+LOCKING = [(80, 10), (80, 15), (160, 10), (160, 17.5)]
+
+
+@pytest.mark.parametrize(("speed", "torque"), [(80, 5), *LOCKING])
+def test_recorded_forces_take_the_whole_momentum(stop, shipped, speed, torque):
+    """Creep forces as recorded, at default tolerance: what they and the air take, wagon and liquid lose."""
+    setting = case(speed, torque, "shallow-water", "output.interval=1 ms")
+    before = problem(shipped(*setting))
+    start, stop_ = whole_momentum_at_rest(before), problem(shipped(*setting))
+    run, result = integrate(stop_), stop(*setting)
+    assert (max(result.locked_time_s) > 1.0) == ((speed, torque) in LOCKING)
+    constant, linear, quadratic = stop_.model.wagon.resistance
+    rolling = result.channels["speed"]
+    force = sum(result.channels[f"wheel_{i}_tangential_force"] for i in (1, 2, 3, 4))
+    force = force + constant + linear * rolling + quadratic * rolling**2
+    taken = CubicSpline(result.time, force).antiderivative()(result.time)
+    assert start - whole_momentum(stop_, run.state) == pytest.approx(taken[-1], rel=3e-5)
+
+
 def whole_momentum_at_rest(stop_):
     model, v = stop_.model, stop_.start.v
     return float(model.wagon.mass[0] @ v) + model.shallow.mass * float(model.wagon.tank_row @ v)
