@@ -13,12 +13,14 @@ from slosh_cli.results.result import PerWheel, Result, Status
 from slosh_cli.results.validity import Extent, checks, warnings_of
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import advance, record, state
+from slosh_cli.solver.cells import DEEPEST
 from slosh_cli.solver.ledger import BRAKE, CREEP, FOUNDATION, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
 from slosh_cli.solver.run import Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import HALF, Problem, problem
 from slosh_cli.solver.state import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.section import section_of
+from slosh_cli.tank.still import frequency_excess
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.wagon.coordinates import (
     BOGIE_HEAVE,
@@ -125,8 +127,8 @@ def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
         rise=float(run.state.surface[0]),
         room=section.height - depth,
         depth=depth,
-        length=tank.length,
-        mean_depth=section.area(depth) / section.surface_width(depth),
+        frequency_excess=frequency_excess(tank, GRAVITY) if stop.model.shallow.cells else 0.0,
+        head=max(float(run.state.push[DEEPEST] - stop.model.shallow.table.depth[-1]), 0.0),
         unloading=float(np.max(1 - least / stop.static_loads)),
         lifts=int(run.state.lifted[0]),
         overturned=run.outcome == advance.OVERTURNED,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -41,25 +40,20 @@ class Check:
 
 @dataclass(frozen=True)
 class Extent:
-    """What the verdicts look at: surface rise, room above and depth below the still surface (m), tank length (m),
-    mean depth A/B of the still liquid (m), largest wheel unloading, wheel lift-offs, largest ledger residual."""
+    """What the verdicts look at: surface rise, room above and depth below the still surface (m), how much too high the
+    first frequency of shallow water is, its largest head of pressure under the roof (m), largest wheel unloading, wheel
+    lift-offs, largest ledger residual."""
 
     liquid_model: str
     rise: float
     room: float
     depth: float
-    length: float
-    mean_depth: float
+    frequency_excess: float
+    head: float
     unloading: float
     lifts: int
     overturned: bool
     residual: float
-
-
-def frequency_excess(mean_depth: float, length: float) -> float:
-    """How much too high shallow water's first frequency is: `sqrt(kh / tanh kh) - 1`, k = pi/L, h = A/B (m)."""
-    steepness = math.pi * mean_depth / length
-    return math.sqrt(steepness / math.tanh(steepness)) - 1
 
 
 def checks(extent: Extent) -> tuple[Check, ...]:
@@ -79,14 +73,21 @@ def _checks(x: Extent) -> Iterator[Check]:
             "then overstates the shift of weight. Compare with tank.liquid.model: shallow-water.",
         )
     if x.liquid_model == "shallow-water":
-        excess = frequency_excess(x.mean_depth, x.length)
         yield Check(
             "excess of the first slosh frequency",
             "model",
-            excess,
+            x.frequency_excess,
             FREQUENCY_LIMIT,
-            f"Shallow water overstates the first slosh frequency of this tank by {excess:.1%}: it is too deep for its "
-            "length. Compare with tank.liquid.model: modal at small surface rise.",
+            f"Shallow water overstates the first slosh frequency of this tank by {x.frequency_excess:.1%}: it is too "
+            "deep for its length. Compare with tank.liquid.model: modal at small surface rise.",
+        )
+        yield Check(
+            "head of pressure under the roof",
+            "accuracy",
+            x.head,
+            0.0,
+            f"The liquid struck the roof (head up to {x.head:.1f} m): peak forces and wheel loads depend on "
+            "tank.liquid.slot_speed there; the braking distance hardly does.",
         )
     yield Check(
         "wheels lifted off",

@@ -6,12 +6,13 @@ sees everything at once.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.units import shown
+from slosh_cli.scenario.units import STANDARD_GRAVITY, shown
 
 DOMAIN_MARGIN: Final = 5.0
 """Least length of rail ahead of the first and behind the last wheel, m."""
@@ -21,6 +22,8 @@ WIDEST_TANK: Final = 5.0
 """Wider than every loading gauge in use, m."""
 LONGEST_TANK: Final = 3.0
 """Of the pivot spacing."""
+WIDEST_SLOT: Final = 0.2
+"""Of the tank's mean width: the slot above the roof of a shallow-water liquid."""
 MOST_ELEMENTS: Final = 20_000
 MOST_ROWS: Final = 2_000_000
 
@@ -180,6 +183,17 @@ def _baffles(v: Values) -> Iterator[Finding]:
             yield Finding(path, rule, given, f"write a place between `0 m` and `{shown(length)} m`")
 
 
+def _slot(v: Values) -> Iterator[Finding]:
+    """Pressure waves at c need a slot of width `g A/c^2`, the part `g H/c^2` of the mean width A/H."""
+    key, extent = "tank.liquid.slot_speed", tank_extent(v)
+    if extent is None or v.values.get("tank.liquid.model") != "shallow-water" or not v.has(key):
+        return
+    least = math.sqrt(STANDARD_GRAVITY * extent[1] / WIDEST_SLOT)
+    if v[key] < least:
+        rule = f"must be at least {shown(least)} m/s, or the slot above the roof is wider than a fifth of the tank"
+        yield _finding(key, rule, f"`{shown(v[key])} m/s`", "leave it out, or write `30 m/s` or more")
+
+
 def tank_extent(v: Values) -> tuple[float, float] | None:
     """Largest inner (width, height) of the tank in m, None where they are not known."""
     if v.has("tank.radius"):
@@ -221,7 +235,7 @@ def _dimension_key(v: Values, name: str) -> str:
 
 
 Rule = Callable[[Values], Iterator[Finding]]
-TANK_RULES: Final[tuple[Rule, ...]] = (_coefficients, _baffles)
+TANK_RULES: Final[tuple[Rule, ...]] = (_coefficients, _baffles, _slot)
 SCENARIO_RULES: Final[tuple[Rule, ...]] = (
     *TANK_RULES,
     _wheels_apart,

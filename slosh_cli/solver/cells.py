@@ -17,7 +17,7 @@ from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
 
 # places in State.push
-FORCE, MOMENT, LEFT_FORCE, LEFT_MOMENT, OWED_FORCE, OWED_MOMENT, LOSS = range(7)
+FORCE, MOMENT, LEFT_FORCE, LEFT_MOMENT, OWED_FORCE, OWED_MOMENT, LOSS, DEEPEST = range(8)
 
 
 @inner_kernel
@@ -107,8 +107,13 @@ def carry_cells(model, scratch, state, step):
 
 @inner_kernel
 def settle_cells(state):
-    """Accept the liquid's step: its end is the next start, what is owed is left for the next step."""
+    """Accept the liquid's step: its end is the next start, what is owed is left for the next step.
+
+    The largest depth (m) of any cell so far is kept; above the roof it is a head of pressure.
+    """
     copy_cells(state.cells_end, state.cells_start)
+    for i in range(state.cells_end.depth.size):
+        state.push[DEEPEST] = max(state.push[DEEPEST], state.cells_end.depth[i])
     state.push[LEFT_FORCE] = state.push[OWED_FORCE]
     state.push[LEFT_MOMENT] = state.push[OWED_MOMENT]
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
+from slosh_cli.tank.longitudinal import longitudinal_modes
 from slosh_cli.tank.section import RectangularSection, section_of
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.tank.shallow import ShallowLiquid
@@ -70,6 +73,22 @@ def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[Sha
         table=section_table(section, gravity, tank.liquid.slot_speed),
     )
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
+
+
+def frequency_excess(tank: LoadedTank, gravity: float) -> float:
+    """How much too high shallow water's first frequency is, by potential flow in this very section.
+
+    Where the section has no finite-element mesh, that of a box of the same mean depth h = A/B: `sqrt(kh/tanh kh) - 1`.
+    """
+    section = section_of(tank)
+    depth = tank.fill * section.height
+    mean_depth = section.area(depth) / section.surface_width(depth)
+    wavenumber = math.pi / tank.length
+    frequency = wavenumber * math.sqrt(gravity * mean_depth)
+    try:
+        return frequency / longitudinal_modes(section, depth, tank.length).modes[0].frequency - 1.0
+    except TankError:
+        return math.sqrt(wavenumber * mean_depth / math.tanh(wavenumber * mean_depth)) - 1.0
 
 
 def baffle_loss(opening: float) -> float:

@@ -178,7 +178,7 @@ def test_every_run_has_verdicts_in_json_hdf5_and_tables(stop, liquid, tmp_path):
     always = {"wheels lifted off", "pitch beyond small angles", "energy ledger residual", "wheel unloading"}
     own = {
         "modal": {"surface rise over the room above and below"},
-        "shallow-water": {"excess of the first slosh frequency"},
+        "shallow-water": {"excess of the first slosh frequency", "head of pressure under the roof"},
     }
     assert set(verdicts) == always | own.get(liquid, set())
     unloading = verdicts["wheel unloading"]
@@ -205,6 +205,29 @@ def test_verdicts_of_the_shallow_water_liquid(stop):
     short = stop(*case(80, 5, "shallow-water", "tank.length=4 m"))
     assert not short.in_model_range
     assert any("frequency" in warning for warning in short.warnings)
+
+
+SLOT_SPEEDS = (15, 30, 60)
+
+
+@pytest.mark.parametrize(("speed", "torque"), [(80, 10), (80, 15), (160, 10)])
+def test_a_stop_that_strikes_the_roof_says_what_depends_on_the_slot(stop, speed, torque):
+    """Peaks do, the distance hardly does; the run remains inside its model."""
+    stops = [stop(*case(speed, torque, "shallow-water", f"tank.liquid.slot_speed={c} m/s")) for c in SLOT_SPEEDS]
+    for result in stops:
+        (head,) = (c for c in result.checks if c.name.startswith("head"))
+        assert head.value > 0.1
+        assert any("slot_speed" in warning for warning in result.warnings)
+        assert result.in_model_range
+    distances = np.array([result.braking_distance_m for result in stops])
+    assert np.abs(distances / distances[1] - 1).max() < 2e-3, distances
+
+
+def test_a_gentle_stop_says_nothing_of_the_roof(stop):
+    result = stop(*case(80, 2.5, "shallow-water"))
+    (head,) = (c for c in result.checks if c.name.startswith("head"))
+    assert head.value == 0.0
+    assert not any("slot_speed" in warning for warning in result.warnings)
 
 
 def test_linear_theory_says_where_it_ends(stop):

@@ -176,6 +176,13 @@ CROSS_RULES = (
         ),
     ),
     one(
+        "slot wider than a fifth of the tank", "liquid: {model: modal,",
+        "liquid: {model: shallow-water, slot_speed: 8 m/s,",
+        (
+            26, "tank.liquid.slot_speed", "must be at least 12.1", "`8 m/s`", "write `30 m/s` or more",
+        ),
+    ),
+    one(
         "elements too many", "{length: 50 m, element_length: 0.5 m}", "{length: 500 m, element_length: 1 cm}",
         (
             37, "track.domain.element_length", "must give at most 20000 elements over 500 m", "`0.01 m`",

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 from shallow_tools import BOX, CIRCLE, LENGTH, G, history, liquid_in, moving
-from tank_examples import box, cylinder
+from tank_examples import V_TROUGH, box, cylinder, ellipse, polygon
 
-from slosh_cli.results.validity import frequency_excess
 from slosh_cli.tank.coefficients import SloshMode, computed_modes
 from slosh_cli.tank.section import section_of
+from slosh_cli.tank.still import frequency_excess
 from slosh_cli.validation.cases import kolaei
 
 SECTIONS = {"circle": CIRCLE, "box": BOX}
@@ -76,21 +76,34 @@ def test_force_converges_with_the_cells():
 @pytest.mark.parametrize("shape", [cylinder, box])
 def test_distance_to_potential_flow_falls_with_the_square_of_kh(shape):
     """Acceptance: the first frequency's excess over (kh)^2 tends to a constant as the tank grows: 1/6 for a box."""
-    shares, told = [], []
+    shares = []
     for length in (6.0, 12.0, 24.0, 48.0):
         tank = shape(length=length)
         section = section_of(tank)
         depth = 0.5 * section.height
         mean_depth = section.area(depth) / section.surface_width(depth)
-        excess = np.pi / length * wave_speed(section, depth) / computed_modes(tank, 1)[0].frequency - 1
-        shares.append(excess / (np.pi * mean_depth / length) ** 2)
-        told.append(frequency_excess(mean_depth, length) / excess)
+        shares.append(frequency_excess(tank, G) / (np.pi * mean_depth / length) ** 2)
     assert np.ptp(shares[1:]) < 0.03 * shares[-1]
     if shape is box:
         assert shares[-1] == pytest.approx(1 / 6, rel=3e-3)
-        assert told == pytest.approx([1.0] * 4, abs=1e-6)
-    else:  # the verdict takes a round section for a box of the same mean depth and tells 11 % too little
-        assert told == pytest.approx([0.89] * 4, abs=0.01)
+    else:  # a round section's is larger
+        assert shares[-1] == pytest.approx(0.188, abs=0.002)
+
+
+VERDICTS = [cylinder(), cylinder(fill=0.3), cylinder(fill=0.8), ellipse(), box(), polygon(V_TROUGH)]
+
+
+@pytest.mark.parametrize("tank", VERDICTS, ids=lambda tank: f"{tank.shape} {tank.fill}")
+def test_the_verdict_on_the_first_frequency_is_exact(tank):
+    section = section_of(tank)
+    shallow = np.pi / tank.length * wave_speed(section, tank.fill * section.height)
+    exact = shallow / computed_modes(tank, 1)[0].frequency - 1
+    assert frequency_excess(tank, G) == pytest.approx(exact, rel=1e-9)
+    if tank.shape == "rectangular":  # w^2 = g k tanh kh
+        steepness = np.pi / tank.length * 0.5 * tank.height
+        assert exact == pytest.approx(np.sqrt(steepness / np.tanh(steepness)) - 1, rel=1e-3)
+    if tank.shape == "polygon":  # walls at 45 degrees: potential 1 + k^2 (y^2 + z^2)/4, c^2 = (g h/2) (1 - k^2 h^2/6)
+        assert exact == pytest.approx((np.pi / tank.length * 0.5) ** 2 / 12, rel=0.01)
 
 
 def test_convergence_in_cells_and_slot_speed_against_the_roof():
