@@ -3,8 +3,9 @@
 Over a step the liquid is carried through the tank's own motion (its stage velocities, so that momentum balances to
 rounding) and pushes back with its mean force and moment over the step, which enter all stages alike. They are first
 estimated by carrying the liquid through the step with the tank's last acceleration; what the estimate misses of the
-impulse is handed to the next step, so no impulse is ever lost. The force's course within a step is not resolved: the
-distance's error falls faster than the step, that of the energy ledger with it (seen: orders 1.4 and 1.1).
+impulse is handed to the next step, so no impulse is ever lost. Places and speeds are of second order in the step
+(seen: 2.0 in smooth water, pitch too where bores run). The force's course within a step is not resolved: what
+the ledger misses falls with orders 1.5 to 0.7, a bore's arrival at a wall being a jump of the force in any step.
 """
 
 from __future__ import annotations
