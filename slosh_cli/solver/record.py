@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.compiled import inner_kernel, kernel, vector_kernel
 from slosh_cli.solver.cells import FORCE, MOMENT, cells_rise
 from slosh_cli.solver.method import GAMMA
 from slosh_cli.solver.problem import LOSSES
@@ -47,6 +47,20 @@ def _parabola(left, middle, right, part):
     return by_left * left + by_middle * middle + by_right * right
 
 
+@vector_kernel
+def _hermites(left, left_rate, right, right_rate, step, part, target):
+    """`_hermite` of every entry, into `target`."""
+    for i in range(target.size):
+        target[i] = _hermite(left[i], left_rate[i], right[i], right_rate[i], step, part)
+
+
+@vector_kernel
+def _parabolas(left, middle, right, part, target):
+    """`_parabola` of every entry, into `target`."""
+    for i in range(target.size):
+        target[i] = _parabola(left[i], middle[i], right[i], part)
+
+
 @inner_kernel
 def _recorded_creep(model, state, row, wheel, normal, part):
     """Creep force (N) of a wheel: the parabola through the stages' own, whose impulse is that of the equations.
@@ -68,10 +82,9 @@ def record_row(model, state, row, time, step, part, phase):
     """Interpolate the step from `state.start` to `state.end` at its fraction `part` into `row`."""
     start, middle, end = state.start, state.middle, state.end
     row[TIME_COLUMN] = time + part * step
-    for i in range(COORDINATES):
-        row[PLACE_COLUMN + i] = _hermite(start.q[i], start.v[i], end.q[i], end.v[i], step, part)
-        row[SPEED_COLUMN + i] = _hermite(start.v[i], start.a[i], end.v[i], end.a[i], step, part)
-        row[ACCELERATION_COLUMN + i] = _parabola(start.a[i], middle.a[i], end.a[i], part)
+    _hermites(start.q, start.v, end.q, end.v, step, part, row[PLACE_COLUMN:SPEED_COLUMN])
+    _hermites(start.v, start.a, end.v, end.a, step, part, row[SPEED_COLUMN:ACCELERATION_COLUMN])
+    _parabolas(start.a, middle.a, end.a, part, row[ACCELERATION_COLUMN:NORMAL_COLUMN])
     torque = brake_torque(model.brake, time + part * step, phase)
     radius = model.wagon.wheel_radius
     for i in range(WHEELS):
@@ -85,10 +98,9 @@ def record_row(model, state, row, time, step, part, phase):
         row[TORQUE_COLUMN + i] = creep * radius if state.locked[i] else torque
     for k in range(3):
         row[ENERGY_COLUMN + k] = (1.0 - part) * state.energies_before[k] + part * state.energies[k]
-    for k in range(LOSSES):
-        row[LOSS_COLUMN + k] = _hermite(
-            state.losses_before[k], start.power[k], state.losses[k], end.power[k], step, part
-        )
+    _hermites(
+        state.losses_before, start.power, state.losses, end.power, step, part, row[LOSS_COLUMN:RESIDUAL_COLUMN]
+    )  # fmt: skip
     row[RESIDUAL_COLUMN] = (1.0 - part) * state.residual[0] + part * state.residual[1]
     row[CELLS_COLUMN] = state.push[FORCE]
     row[CELLS_COLUMN + 1] = state.push[MOMENT]
@@ -96,14 +108,14 @@ def record_row(model, state, row, time, step, part, phase):
     front_end, rear_end = cells_rise(model, state.cells_end)
     row[CELLS_COLUMN + 2] = (1.0 - part) * front + part * front_end
     row[CELLS_COLUMN + 3] = (1.0 - part) * rear + part * rear_end
-    modes = start.slosh.size
-    for n in range(modes):
-        row[SLOSH_COLUMN + n] = _hermite(
-            start.slosh[n], start.slosh_rate[n], end.slosh[n], end.slosh_rate[n], step, part
-        )
-        row[SLOSH_COLUMN + modes + n] = _parabola(
-            start.slosh_second[n], middle.slosh_second[n], end.slosh_second[n], part
-        )
+    amplitudes, accelerations = SLOSH_COLUMN, SLOSH_COLUMN + start.slosh.size
+    _hermites(
+        start.slosh, start.slosh_rate, end.slosh, end.slosh_rate, step, part, row[amplitudes:accelerations]
+    )  # fmt: skip
+    _parabolas(
+        start.slosh_second, middle.slosh_second, end.slosh_second, part,
+        row[accelerations : accelerations + start.slosh.size],
+    )  # fmt: skip
 
 
 @inner_kernel

@@ -20,6 +20,8 @@ Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
 
 STEPS_PER_CALL = 200
+MOST_ROWS = 1 << 16
+"""Rows of the record in one piece."""
 FIRST_STEP = 1e-3
 """First step to try, s."""
 
@@ -51,8 +53,7 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
     model, modes = problem.model, problem.start.slosh.size
     state = new_state(problem.start, problem.cells, EVENT_COUNT, FIRST_STEP)
     scratch = new_scratch(problem.start.rail.size, modes, problem.cells.area.size)
-    per_step = int(model.control.longest_step / model.control.interval) + 2
-    buffer = np.zeros((max(2048, 2 * per_step), SLOSH_COLUMN + 2 * modes))
+    buffer = np.empty((_most_rows(problem), SLOSH_COLUMN + 2 * modes))  # pages that stay empty cost nothing
     filled: list[Array] = []
     outcome = loop.RUNNING if loop.begin(model, scratch, state) else loop.UNSOLVED
     loop.advance(model, scratch, state, buffer, 0)  # loads or compiles the machine code before the clock starts
@@ -67,18 +68,25 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
         if progress is not None:
             progress(_fraction(problem, state), float(state.start.v[0]))
     seconds = time.perf_counter() - began
-    filled.append(buffer[: state.counts[ROWS]].copy())
-    return Run(np.concatenate([*filled, _last_row(problem, state, filled)]), state, outcome, seconds)
+    _record_end(problem, state, buffer)
+    rows = buffer[: state.counts[ROWS]]
+    return Run(np.concatenate([*filled, rows]) if filled else rows, state, outcome, seconds)
 
 
-def _last_row(problem: Problem, state: State, filled: list[Array]) -> Array:
-    """The end of the run as a row of its own, unless an output instant coincides with it."""
+def _most_rows(problem: Problem) -> int:
+    """Rows to make room for at once: all up to the time limit, or many steps' worth."""
+    control = problem.model.control
+    per_step = int(control.longest_step / control.interval) + 3
+    return max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, MOST_ROWS))
+
+
+def _record_end(problem: Problem, state: State, buffer: Array) -> None:
+    """Add the end of the run as a row of its own, unless an output instant coincides with it."""
     now, interval = state.clock[TIME], problem.model.control.interval
     if abs(state.clock[NEXT_OUTPUT] - interval - now) < 1e-9 * max(interval, now):
-        return filled[-1][:0]
-    row = np.zeros((1, filled[-1].shape[1]))
-    record_row(problem.model, state, row[0], now, 1.0, 0.0, state.counts[PHASE])
-    return row
+        return
+    record_row(problem.model, state, buffer[state.counts[ROWS]], now, 1.0, 0.0, state.counts[PHASE])
+    state.counts[ROWS] += 1
 
 
 def _fraction(problem: Problem, state: State) -> float:

@@ -32,15 +32,15 @@ STOPS: dict[str, tuple[str, ...]] = {
 }
 COUNTS = ("steps", "rejected", "newton_iterations", "factorisations", "right_hand_sides", "events")
 MEASURED: dict[str, tuple[int, ...]] = {
-    "80 km/h, liquid": (344, 33, 2562, 380, 3260, 2),
-    "80 km/h, solid": (252, 18, 1456, 273, 2255, 2),
-    "160 km/h, liquid": (511, 70, 4258, 585, 4967, 2),
-    "160 km/h, solid": (331, 18, 1795, 353, 2910, 2),
-    "160 km/h, tight": (1299, 23, 9253, 1326, 11485, 2),
-    "shallow water": (567, 41, 3464, 611, 5090, 2),
-    "wet, wheels lock": (618, 84, 4266, 709, 5946, 6),
-    "some wheels lock": (513, 62, 3309, 582, 4817, 6),
-    "all wheels lock": (519, 54, 3281, 582, 4771, 8),
+    "80 km/h, liquid": (321, 30, 1796, 354, 2586, 2),
+    "80 km/h, solid": (252, 18, 1059, 273, 1909, 2),
+    "160 km/h, liquid": (423, 34, 2661, 461, 3415, 2),
+    "160 km/h, solid": (331, 20, 1310, 355, 2482, 2),
+    "160 km/h, tight": (1298, 18, 6683, 1320, 10274, 2),
+    "shallow water": (566, 42, 2503, 611, 4276, 2),
+    "wet, wheels lock": (611, 81, 3121, 699, 4976, 6),
+    "some wheels lock": (513, 63, 2552, 583, 4151, 6),
+    "all wheels lock": (519, 54, 2597, 582, 4156, 8),
 }
 """In the order of `COUNTS`."""
 
