@@ -6,6 +6,7 @@ it. A stop outside linear theory has a hollow marker and hangs on a dotted line.
 
 from __future__ import annotations
 
+import gc
 import math
 import re
 import textwrap
@@ -91,6 +92,8 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
         for number, page in enumerate(pages, start=1):
             name = NAME if len(pages) == 1 else f"{NAME}_{number}"
             files += save(braking_distance(page), folder, name, formats)
+            if len(pages) > 1:
+                gc.collect()  # a drawn figure is ten megabytes of objects that refer to each other
     for file in folder.iterdir():
         if file not in files and _OURS.fullmatch(file.name):
             file.unlink(missing_ok=True)
