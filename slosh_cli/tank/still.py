@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -107,6 +108,7 @@ def _baffle_losses(tank: FlowingTank) -> Array:
     return losses
 
 
+@cache
 def no_cells() -> tuple[ShallowLiquid, CellColumns]:
     """The absence of a shallow-water liquid, for loads that are frozen or described by modes."""
     table = section_table(RectangularSection(1.0, 1.0), 1.0, 1.0)

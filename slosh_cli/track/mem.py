@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from slosh_cli.scenario import Track
 
 Array = NDArray[np.float64]
+GAUSS = np.polynomial.legendre.leggauss(4)
 HALF_BAND = 3
 """Diagonals on either side of the main one in every rail matrix."""
 
@@ -61,7 +62,7 @@ def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
 
 def _hermite(length: float) -> tuple[Array, Array, Array, Array]:
     """Shape functions, first and second derivatives at 4 Gauss points (4, 4), and the weights (4,)."""
-    points, weights = np.polynomial.legendre.leggauss(4)
+    points, weights = GAUSS
     x, w = 0.5 * (points + 1), 0.5 * length * weights
     value = np.array([1 - 3 * x**2 + 2 * x**3, length * x * (1 - x) ** 2, x**2 * (3 - 2 * x), length * x**2 * (x - 1)])
     slope = np.array([6 * x**2 - 6 * x, length * (1 - 4 * x + 3 * x**2), 6 * x - 6 * x**2, length * (3 * x**2 - 2 * x)])

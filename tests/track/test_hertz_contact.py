@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import ellipe, ellipkm1
 
 from slosh_cli.scenario import Adhesion, Contact
 from slosh_cli.track.contact import contact_model, normal_force
-from slosh_cli.track.hertz import hertz_contact
+from slosh_cli.track.hertz import _elliptic_integrals, hertz_contact
 from slosh_cli.validation.exact.creep import half_space
 
 DRY = Adhesion(mu0=0.55, A=0.40, B=0.60, kA=1.00, kS=0.40)
@@ -22,6 +23,14 @@ def test_check_numbers():
     hertz = hertz_contact(0.46, 0.30, 210e9, 0.3)
     assert hertz.stiffness == pytest.approx(9.413e10, rel=1e-4)
     assert hertz.semi_axes(93e3) == (pytest.approx(7.0e-3, abs=5e-5), pytest.approx(5.3e-3, abs=5e-5))
+
+
+@pytest.mark.parametrize("axis_ratio", [1.0, 1.0 + 1e-9, 1.001, 1.3, 3.0, 50.0, 1e4])
+def test_elliptic_integrals_are_scipys(axis_ratio):
+    first, second, difference = _elliptic_integrals(axis_ratio)
+    assert first == pytest.approx(ellipkm1(axis_ratio**-2), rel=2e-15)
+    assert second == pytest.approx(ellipe(1 - axis_ratio**-2), rel=2e-15)
+    assert difference == pytest.approx(first - second, rel=1e-12, abs=1e-15)
 
 
 @pytest.mark.parametrize(("wheel", "crown"), [(0.46, 0.30), (0.30, 0.46), (0.46, 0.08), (0.5, 3.0), (0.5, 0.5001)])
