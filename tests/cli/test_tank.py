@@ -232,7 +232,7 @@ def test_every_axis_of_the_figures_has_a_unit(slosh: Slosh, monkeypatch: pytest.
     from slosh_cli.report import tank_figures
 
     drawn = []
-    monkeypatch.setattr(tank_figures, "_save", lambda figure, *_: drawn.append(figure) or [])
+    monkeypatch.setattr(tank_figures, "save", lambda figure, *_: drawn.append(figure) or [])
     slosh("tank", "coefficients", HALF, "-o", "here")
     slosh("tank", "excite", HALF, "--deceleration", "1 m/s^2", "--duration", "2 s", "-o", "here")
     slosh("tank", "chart", HALF, "--fills", "0.3,0.5", "-o", "here")
