@@ -18,6 +18,8 @@ from slosh_cli.tank.section import PolygonalSection, Section
 Array = NDArray[np.float64]
 NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""
+BINS = 1024
+"""Equal parts of depth and area that tell where the search for a node starts."""
 LEDGE = 1e-9
 """Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
 
@@ -26,7 +28,8 @@ class SectionTable(NamedTuple):
     """Section at the depths (K,) m up to where the slot of `slot_width` (m) takes over; the roof is at `roof` (m).
 
     `area` m^2, `width` m, `first` = INT z b dz m^3, `pressure` = INT (h - z) b dz m^3 (the moment I1 of the
-    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,).
+    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `depth_start`, `area_start` (BINS + 1,): the last
+    node not beyond the start of each of as many equal parts of depth and area.
     """
 
     depth: Array
@@ -35,6 +38,8 @@ class SectionTable(NamedTuple):
     first: Array
     pressure: Array
     pressure_arm: Array
+    depth_start: NDArray[np.int64]
+    area_start: NDArray[np.int64]
     slot_width: float
     roof: float
 
@@ -59,6 +64,13 @@ def _nodes(section: Section, top: float) -> Array:
     return np.asarray(sorted([0.0, *apart, *corners, top]), dtype=np.float64)
 
 
+def _starts(places: Array) -> NDArray[np.int64]:
+    """Last node not beyond the start of each bin, one bin early so that rounding cannot pass it by."""
+    edges = np.linspace(0.0, float(places[-1]), BINS + 1)
+    found = np.searchsorted(places, edges, side="right") - 1
+    return np.asarray(np.maximum(found - 1, 0), dtype=np.int64)
+
+
 def section_table(section: Section, gravity: float, slot_speed: float) -> SectionTable:
     """Tabulate `section`; pressure waves in the full section run at `slot_speed` (m/s). Gravity in m/s^2."""
     slot_width = gravity * section.area(section.height) / slot_speed**2
@@ -78,9 +90,21 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         first=first,
         pressure=depth * area - first,
         pressure_arm=depth * first - second,
+        depth_start=_starts(depth),
+        area_start=_starts(area),
         slot_width=slot_width,
         roof=section.height,
     )
+
+
+@kernel
+def _node(places, start, place):
+    """Last of the `places` (K,) not beyond `place`, searched from its bin's `start`."""
+    bins = start.size - 1
+    node = start[min(int(bins * place / places[places.size - 1]), bins)]
+    while node < places.size - 2 and places[node + 1] <= place:
+        node += 1
+    return node
 
 
 @kernel
@@ -91,13 +115,8 @@ def depth_of(table, area):
         return table.depth[last] + (area - table.area[last]) / table.slot_width
     if area <= 0.0:
         return 0.0
-    low, high = 0, last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table.area[middle] <= area:
-            low = middle
-        else:
-            high = middle
+    low = _node(table.area, table.area_start, area)
+    high = low + 1
     depth = table.depth[low] + (table.depth[high] - table.depth[low]) * (area - table.area[low]) / (
         table.area[high] - table.area[low]
     )
@@ -108,7 +127,7 @@ def depth_of(table, area):
         following = min(max(depth + change, left), right)
         change = following - depth
         depth = following
-        if abs(change) <= 1e-15 * right:
+        if abs(change) <= 1e-9 * depth:  # the next change would be about the square of this one
             break
     return depth
 
@@ -133,18 +152,6 @@ def _cubic(places, values, slopes, k, place):
 
 
 @kernel
-def _place(table, depth):
-    low, high = 0, table.depth.size - 1
-    while high - low > 1:
-        middle = (low + high) // 2
-        if table.depth[middle] <= depth:
-            low = middle
-        else:
-            high = middle
-    return low
-
-
-@kernel
 def section_at(table, depth):
     """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
     last = table.depth.size - 1
@@ -154,7 +161,7 @@ def section_at(table, depth):
         return area, table.pressure[last] + head * (table.area[last] + 0.5 * table.slot_width * head), table.slot_width
     if depth <= 0.0:
         return 0.0, 0.0, 1.0
-    k = _place(table, depth)
+    k = _node(table.depth, table.depth_start, depth)
     area, width = _cubic(table.depth, table.area, table.width, k, depth)
     pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
     return area, pressure, max(width, 1e-12)
@@ -181,7 +188,7 @@ def pressure_height(table, depth):
         head = depth - table.depth[last]
         arm = table.pressure_arm[last] + head * table.first[last]
         return arm / (table.pressure[last] + head * table.area[last])
-    k = _place(table, depth)
+    k = _node(table.depth, table.depth_start, depth)
     area, _ = _cubic(table.depth, table.area, table.width, k, depth)
     pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
     span = table.depth[k + 1] - table.depth[k]
