@@ -99,7 +99,7 @@ def test_nothing_but_wheels_and_resistance_takes_momentum(stop, shipped, until, 
     assert start - whole_momentum(stop_, run.state) == pytest.approx(by_wheels + float(by_air), rel=5e-6)
 
 
-LOCKING = [(80, 10), (80, 15), (160, 10), (160, 17.5)]
+LOCKING = [(80, 10), (160, 17.5)]
 
 
 @pytest.mark.parametrize(("speed", "torque"), [(80, 5), *LOCKING])
@@ -213,13 +213,13 @@ def test_verdicts_of_the_shallow_water_liquid(stop):
 SLOT_SPEEDS = (15, 30, 60)
 
 
-@pytest.mark.parametrize(("speed", "torque"), [(80, 10), (80, 15), (160, 10)])
+@pytest.mark.parametrize(("speed", "torque"), [(80, 10), (80, 15)])
 def test_a_stop_that_strikes_the_roof_says_what_depends_on_the_slot(stop, speed, torque):
     """Peaks do, the distance hardly does; the run remains inside its model."""
     stops = [stop(*case(speed, torque, "shallow-water", f"tank.liquid.slot_speed={c} m/s")) for c in SLOT_SPEEDS]
     for result in stops:
         (head,) = (c for c in result.checks if c.name.startswith("head"))
-        assert head.value > 0.1
+        assert head.value > 0.5
         assert any("slot_speed" in warning for warning in result.warnings)
         assert result.in_model_range
     distances = np.array([result.braking_distance_m for result in stops])
