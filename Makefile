@@ -5,12 +5,14 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all lint types format docs reference clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
 	@echo "make test      the tests (a few minutes; the first call also sets up .venv)"
 	@echo "make test-all  the tests with the slow studies"
+	@echo "make bench     slosh beside other ways of computing a stop, in ratios (a quarter of an hour); results in outputs/bench/"
+	@echo "make bench-batch  ten thousand stops, make bench-docs: put the last results into docs/speed.md"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
@@ -29,6 +31,23 @@ test: $(READY)
 
 test-all: $(READY)
 	$(BIN)/python -m pytest
+
+# `make test` never runs the benchmarks: their files are not named test_*
+PARTS ?= contestants floor scaling startup
+BENCH = $(BIN)/python -m pytest -q --benchmark-sort=name --benchmark-columns=median,iqr,rounds
+
+bench: $(READY)
+	mkdir -p outputs/bench
+	for part in $(PARTS); do \
+	  $(BENCH) tests/benchmarks/bench_$$part.py --benchmark-json=outputs/bench/$$part.json || exit 1; \
+	done
+	$(BIN)/python -m tests.benchmarks
+
+bench-batch: PARTS = batch
+bench-batch: bench
+
+bench-docs: $(READY)
+	$(BIN)/python -m tests.benchmarks --docs
 
 lint: $(READY)
 	$(BIN)/ruff check

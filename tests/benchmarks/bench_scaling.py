@@ -1,0 +1,94 @@
+"""How the time of a stop grows with elements, modes and output, and how a study uses threads and Dask workers."""
+
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import pytest
+
+from slosh_cli import simulate
+from slosh_cli.study.build import Wishes, build
+from slosh_cli.study.cluster import Cluster
+from slosh_cli.study.journal import Journal
+from slosh_cli.study.plan import Study
+from slosh_cli.study.runner import Workers, plan, run_study
+from slosh_cli.study.threads import Threads, warm_up
+
+from .conftest import ROUNDS
+from .same_stop import scenario, stopped
+
+DOMAIN = 44.0
+"""Rail under the wagon, m: 50 elements of it are the longest allowed, half a wheelbase."""
+UNRECORDED = "100 s"
+
+
+def growth(benchmark: Any, by: str, count: float, *overrides: str) -> None:
+    case = scenario(*overrides)
+    simulate(case)
+    result = benchmark.pedantic(simulate, args=(case,), rounds=ROUNDS)
+    benchmark.extra_info |= {
+        "kind": "growth", "by": by, "count": count, "steps": result.steps, "rejected": result.rejected_steps,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("elements", [50, 100, 200, 400, 800, 1600])
+def test_elements(benchmark: Any, elements: int) -> None:
+    length = f"track.domain.length={DOMAIN} m"
+    growth(benchmark, "elements", elements, length, f"track.domain.element_length={DOMAIN / elements} m")
+
+
+@pytest.mark.parametrize("modes", [1, 2, 5, 10, 20])
+def test_modes(benchmark: Any, modes: int) -> None:
+    growth(benchmark, "modes", modes, "tank.coefficients=computed", f"tank.modes={modes}")
+
+
+@pytest.mark.parametrize("interval", [1.0, 10.0, 100.0])
+def test_output_interval(benchmark: Any, in_turns: Callable[..., None], interval: float) -> None:
+    """Beside the same stop without any row but the last."""
+    case, silent = scenario(f"output.interval={interval} ms"), scenario(f"output.interval={UNRECORDED}")
+    in_turns(lambda: stopped(case), lambda: stopped(silent))
+    benchmark.extra_info |= {"kind": "recording", "interval_ms": interval}
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    """240 stops: ten speeds, twelve torques, liquid and equivalent solid."""
+    found = build(Wishes(speeds="40:85:5", torques="1:12:1"))
+    assert found.size == 240
+    return found
+
+
+def compute(study: Study, workers: Workers, folder: Path) -> None:
+    """All stops of the study into a new journal."""
+    path = folder / "journal.sqlite"
+    path.unlink(missing_ok=True)
+    with Journal(path) as journal:
+        journal.begin_session("bench")
+        planned = plan(study, journal, folder)
+        done = run_study(study, planned, journal, workers, folder, cancel=Event(), report=lambda *_: None)
+    assert done == study.size
+
+
+def test_two_threads(benchmark: Any, in_turns: Callable[..., None], study: Study, tmp_path: Path) -> None:
+    warm_up(study.stop(0).scenario)
+    in_turns(lambda: compute(study, Threads(2), tmp_path), lambda: compute(study, Threads(1), tmp_path), warm=False)
+    benchmark.extra_info |= {"kind": "threads", "stops": study.size}
+
+
+@pytest.fixture(params=[1, 2])
+def workers(request: pytest.FixtureRequest, study: Study) -> Iterator[tuple[int, Cluster]]:
+    """A Dask cluster of worker processes with one thread each, their kernels loaded."""
+    dask = pytest.importorskip("distributed")
+    local = dask.LocalCluster(n_workers=request.param, threads_per_worker=1, dashboard_address=None)
+    with closing(local), Cluster(local.scheduler_address) as cluster:
+        with dask.Client(local, set_as_default=False) as client:
+            client.run(warm_up, study.stop(0).scenario)
+        yield request.param, cluster
+
+
+def test_dask(benchmark: Any, workers: tuple[int, Cluster], study: Study, tmp_path: Path) -> None:
+    number, cluster = workers
+    benchmark.pedantic(compute, args=(study, cluster, tmp_path), rounds=1)
+    benchmark.extra_info |= {"kind": "dask", "workers": number, "stops": study.size}
