@@ -59,8 +59,9 @@ def test_radau_with_scaled_tolerances(benchmark: Any, reference: float, plain: A
 
 
 def test_bdf(benchmark: Any, plain: Any) -> None:
-    """It takes tens of thousands of steps per second of mere rolling, so a part before the onset is enough."""
-    case, until = scenario(), 0.3
+    """It takes tens of thousands of steps for the half second before the brake sets in; that is enough."""
+    case = scenario()
+    until = case.braking.onset
     distance, work = benchmark.pedantic(
         first_order.braking_distance, args=(case, plain, "BDF", first_order.USUAL, 1e-3, until), rounds=1
     )

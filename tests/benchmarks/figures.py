@@ -39,7 +39,7 @@ def work_precision(records: list[dict[str, Any]]) -> Figure:
     axes.set_xlabel("time of the stop / time of slosh at 2e-4")
     axes.set_ylabel("error in braking distance")
     axes.set_title("160 km/h, 5 kN m: work and precision", loc="left")
-    axes.legend()
+    axes.legend(loc="lower left")
     return figure
 
 
@@ -73,10 +73,12 @@ def scaling(records: list[dict[str, Any]]) -> Figure:
     threads = next(iter(of_kind(records, "threads")), None)
     dask = {one["workers"]: one["seconds"] for one in of_kind(records, "dask")}
     bars: dict[str, float] = {}
-    if threads:
+    if threads is not None:
         bars |= {"1 thread": 1.0, "2 threads": threads["other"] / threads["seconds"]}
         bars |= {f"{n} Dask\nworker{'s' if n > 1 else ''}": threads["other"] / dask[n] for n in sorted(dask)}
-    panels[1, 1].bar(list(bars), list(bars.values()), color="#4a98c9", width=0.6)
+    panels[1, 1].set_visible(bool(bars))
+    if bars:
+        panels[1, 1].bar(list(bars), list(bars.values()), color="#4a98c9", width=0.6)
     panels[1, 1].set_ylabel("stops per second / one thread's")
     return figure
 

@@ -105,7 +105,7 @@ def _seconds(loop: Callable[[int], None], repeats: int, rounds: int) -> float:
     return median(found)
 
 
-def own_costs(banded: Array, repeats: int = 400, rounds: int = 15) -> Costs:
+def own_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
     """Costs of the program's kernels for a rail matrix stored row by row, (n, 7)."""
     n = banded.shape[0]
     work, four, one = np.empty_like(banded), np.empty((n, 4)), np.empty(n)
@@ -123,7 +123,7 @@ def own_costs(banded: Array, repeats: int = 400, rounds: int = 15) -> Costs:
     )
 
 
-def lapack_costs(banded: Array, repeats: int = 400, rounds: int = 15) -> Costs:
+def lapack_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
     """Costs of `dgbtrf` and `dgbtrs` for the same matrix."""
     n = banded.shape[0]
     stored = np.zeros((n, 3 * BAND + 1))  # columns of LAPACK's band storage, one after the other

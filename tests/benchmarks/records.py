@@ -128,11 +128,15 @@ def _growth(records: list[dict[str, Any]]) -> list[Ratio]:
 def _studies(records: list[dict[str, Any]]) -> list[Ratio]:
     threads = next(iter(of_kind(records, "threads")), None)
     dask = {one["workers"]: one["seconds"] for one in of_kind(records, "dask")}
+    batch = next(iter(of_kind(records, "batch")), None)
     return [
         Ratio(
             "one thread / two threads, 240 stops", threads["other"] / threads["seconds"] if threads else None, 1.8, True
         ),
         Ratio("one Dask worker / two, 240 stops", dask[1] / dask[2] if len(dask) == 2 else None),
+        Ratio(
+            "10,000 stops: most memory / after 1,000", batch["most_MiB"] / batch["settled_MiB"] if batch else None, 1.1
+        ),
     ]
 
 
