@@ -36,7 +36,7 @@ def test_floor(benchmark: Any, elements: int) -> None:
     singles = result.work["right_hand_sides"] - 4 * factorisations
     own, lapack = own_costs(matrix), lapack_costs(matrix)
     benchmark.extra_info |= {
-        "kind": "floor", "elements": elements, "unknowns": int(matrix.shape[0]),
+        "kind": "floor", "elements": elements, "unknowns": int(matrix.shape[1]),
         "solver_seconds": sorted(solving)[len(solving) // 2], "steps": result.steps, "rejected": result.rejected_steps,
         "factorisations": factorisations, "singles": singles,
         "own_floor": own.of(factorisations, singles), "lapack_floor": lapack.of(factorisations, singles),

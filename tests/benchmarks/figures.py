@@ -10,7 +10,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from slosh_cli.report.figures import STYLE
+from slosh_cli.report.saving import STYLE
 
 from .records import ALLOWED_ERROR, CONTESTANTS, fastest, of_kind
 

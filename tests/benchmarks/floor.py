@@ -106,13 +106,13 @@ def _seconds(loop: Callable[[int], None], repeats: int, rounds: int) -> float:
 
 
 def own_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
-    """Costs of the program's kernels for a rail matrix stored row by row, (n, 7)."""
-    n = banded.shape[0]
-    work, four, one = np.empty_like(banded), np.empty((n, 4)), np.empty(n)
+    """Costs of the program's kernels for a rail matrix stored by diagonals, (7, n), entry (i, j) at [3 + j - i, i]."""
+    n = banded.shape[1]
+    work, four, one = np.empty_like(banded), np.empty((4, n)), np.empty(n)
     ones = [np.ones_like(four), np.ones_like(one)]
     idle = [
         _seconds(lambda k, pair=pair: _copies(*pair, k), repeats, rounds)
-        for pair in ((banded, work), (ones[0], four), (ones[1][:, None], one[:, None]))
+        for pair in ((banded, work), (ones[0], four), (ones[1][None], one[None]))
     ]
     factors = banded.copy()
     factor_banded(factors)
@@ -125,11 +125,11 @@ def own_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
 
 def lapack_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
     """Costs of `dgbtrf` and `dgbtrs` for the same matrix."""
-    n = banded.shape[0]
+    n = banded.shape[1]
     stored = np.zeros((n, 3 * BAND + 1))  # columns of LAPACK's band storage, one after the other
     for i in range(n):
         for j in range(max(0, i - BAND), min(n, i + BAND + 1)):
-            stored[j, 2 * BAND + i - j] = banded[i, BAND + j - i]
+            stored[j, 2 * BAND + i - j] = banded[BAND + j - i, i]
     numbers, letter = np.array([n, BAND, 3 * BAND + 1, 0, 4], dtype=np.int32), np.array([ord("N")], dtype=np.uint8)
     work, pivots = np.empty_like(stored), np.zeros(n, dtype=np.int32)
     four, one = np.empty((4, n)), np.empty((1, n))
@@ -154,9 +154,9 @@ def lapack_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
 
 
 def _dense(banded: Array) -> Array:
-    n = banded.shape[0]
+    n = banded.shape[1]
     dense = np.zeros((n, n))
     for i in range(n):
         for j in range(max(0, i - BAND), min(n, i + BAND + 1)):
-            dense[i, j] = banded[i, BAND + j - i]
+            dense[i, j] = banded[BAND + j - i, i]
     return dense
