@@ -39,7 +39,7 @@ def work_precision(records: list[dict[str, Any]]) -> Figure:
     axes.set_xlabel("time of the stop / time of slosh at 2e-4")
     axes.set_ylabel("error in braking distance")
     axes.set_title("160 km/h, 5 kN m: work and precision", loc="left")
-    axes.legend(loc="lower left")
+    figure.legend(loc="outside lower center", ncols=2)
     return figure
 
 
