@@ -30,7 +30,7 @@ def work_precision(records: list[dict[str, Any]]) -> Figure:
     unit = ours["seconds"] if ours else 1.0
     for name, look in LOOKS.items():
         runs = [one for one in of_kind(records, "contestant") if one["contestant"] == name and one["error"]]
-        runs.sort(key=lambda one: one["seconds"])
+        runs.sort(key=lambda one: -one["error"])
         if runs:
             axes.loglog([one["seconds"] / unit for one in runs], [one["error"] for one in runs],
                         label=f"({name}) {CONTESTANTS[name]}", **look)  # fmt: skip
