@@ -26,10 +26,11 @@ def spread(axes: Axes, names: Sequence[Annotation], points: Sequence[tuple[float
     on_screen = axes.transData.transform([(x, y) for x, y in points if y is not None])
     taken: list[Bbox] = []
     for name in names:
-        side = name.xyann[1]
+        side, at_point = name.xyann[1], _put(name, (0.0, 0.0))
 
-        def cost(place: tuple[float, float], name: Annotation = name, side: float = side) -> float:
-            box = _put(name, place)
+        def cost(place: tuple[float, float], at_point: Bbox = at_point, side: float = side) -> float:
+            box = at_point.translated(*(axes.figure.dpi / 72.0 * offset for offset in place))
+            box = box.translated(0.0, -box.height) if place[1] < 0 else box
             outside = not (axes.bbox.contains(box.x0, box.y0) and axes.bbox.contains(box.x1, box.y1))
             covered = sum(box.overlaps(other) for other in taken)
             hidden = box.padded(ROOM * axes.figure.dpi / 72.0).count_contains(on_screen)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from slosh_cli.scenario import Track
 
 Array = NDArray[np.float64]
-GAUSS = np.polynomial.legendre.leggauss(4)
 HALF_BAND = 3
 """Diagonals on either side of the main one in every rail matrix."""
 
@@ -60,21 +59,23 @@ def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
     return np.concatenate([*pieces, fixed[-1:]])
 
 
-def _hermite(length: float) -> tuple[Array, Array, Array, Array]:
-    """Shape functions, first and second derivatives at 4 Gauss points (4, 4), and the weights (4,)."""
-    points, weights = GAUSS
-    x, w = 0.5 * (points + 1), 0.5 * length * weights
-    value = np.array([1 - 3 * x**2 + 2 * x**3, length * x * (1 - x) ** 2, x**2 * (3 - 2 * x), length * x**2 * (x - 1)])
-    slope = np.array([6 * x**2 - 6 * x, length * (1 - 4 * x + 3 * x**2), 6 * x - 6 * x**2, length * (3 * x**2 - 2 * x)])
-    curve = np.array([12 * x - 6, length * (6 * x - 4), 6 - 12 * x, length * (6 * x - 2)])
-    return value, slope / length, curve / length**2, w
+def _hermite(lengths: Array) -> tuple[Array, Array, Array, Array]:
+    """Shape functions, first and second derivatives at 4 Gauss points of each element (4, 4, n); the weights (4, n)."""
+    points, weights = np.polynomial.legendre.leggauss(4)
+    x = 0.5 * (points + 1)
+    value = np.array([1 - 3 * x**2 + 2 * x**3, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1)])
+    slope = np.array([6 * x**2 - 6 * x, 1 - 4 * x + 3 * x**2, 6 * x - 6 * x**2, 3 * x**2 - 2 * x])
+    curve = np.array([12 * x - 6, 6 * x - 4, 6 - 12 * x, 6 * x - 2])
+    size = lengths ** np.array([[[0]], [[1]], [[0]], [[1]]])  # functions 2 and 4 are those of the slopes
+    value, slope, curve = (unit[:, :, None] * size / lengths**k for k, unit in enumerate((value, slope, curve)))
+    return value, slope, curve, 0.5 * lengths * weights[:, None]
 
 
-def _element_forms(length: float) -> Array:
-    """The five 4 x 4 element matrices in the order of `RailModel`; (5, 4, 4)."""
-    value, slope, curve, w = _hermite(length)
+def _element_forms(lengths: Array) -> Array:
+    """The five 4 x 4 matrices of each element in the order of `RailModel`; (5, n, 4, 4)."""
+    value, slope, curve, w = _hermite(lengths)
     pairs = ((value, value), (slope, slope), (value, slope), (curve, curve), (slope, curve))
-    return np.array([np.einsum("ig,jg,g->ij", left, right, w) for left, right in pairs])
+    return np.array([np.einsum("ign,jgn,gn->nij", left, right, w) for left, right in pairs])
 
 
 def rail_model(track: Track, wheels: Array) -> RailModel:
@@ -86,14 +87,11 @@ def rail_model(track: Track, wheels: Array) -> RailModel:
     numbers = np.arange(2 * nodes.size).reshape(-1, 2) - 1
     numbers[-1] = -1, unknowns - 1
     places = np.hstack([numbers[:-1], numbers[1:]])
-    lengths, kinds = np.unique(np.diff(nodes), return_inverse=True)
-    element_forms = np.array([_element_forms(float(length)) for length in lengths])[kinds]
-    for i in range(4):
-        for j in range(4):
-            free = (places[:, i] >= 0) & (places[:, j] >= 0)
-            row, column = places[free, i], places[free, j]
-            for form, values in zip(forms, element_forms[free, :, i, j].T, strict=True):
-                np.add.at(form, (HALF_BAND + column - row, row), values)
+    rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
+    free = (rows >= 0) & (columns >= 0)
+    bands = HALF_BAND + columns[free] - rows[free]
+    for form, of_elements in zip(forms, _element_forms(np.diff(nodes)), strict=True):
+        np.add.at(form, (bands, rows[free]), of_elements[free])
     contact = np.array([numbers[np.argmin(np.abs(nodes - wheel)), 0] for wheel in wheels], dtype=np.int64)
     foundation = track.foundation
     return RailModel(
