@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 PATIENCE: Final = 2.0
 """Seconds before a bar appears: a shorter run needs none."""
 
-COMPILE_SECONDS: Final = 30
+COMPILE_SECONDS: Final = 40
 """What compiling the time loop takes on an ordinary machine, in s."""
 
 

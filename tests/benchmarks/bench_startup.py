@@ -25,7 +25,10 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_command(benchmark: Any, in_turns: Callable[..., None], name: str, tmp_path: Path) -> None:
+def test_command(
+    benchmark: Any, in_turns: Callable[..., None], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)  # as where the program is installed
     arguments, imports = COMMANDS[name]
     command = [sys.executable, "-c", SLOSH, *(argument.format(folder=tmp_path) for argument in arguments)]
 
