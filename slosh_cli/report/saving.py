@@ -47,7 +47,8 @@ def save(figure: Figure, folder: Path, name: str, formats: Sequence[str] = FORMA
     The layout, a third of the work, is done once; `Figure.savefig` would do it for every format.
     Raises FileError when a file cannot be written.
     """
-    png: Any = FigureCanvasAgg(figure)  # matplotlib's writers have no types
+    # matplotlib's writers have no types
+    png: Any = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)

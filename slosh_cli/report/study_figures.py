@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
@@ -111,6 +112,7 @@ def braking_distance(page: Page) -> Figure:
     header = 1.35 + 0.28 * (math.ceil(len(handles) / beside) - 1)
     height = 4.6 * lines + 0.4 + header
     figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, WIDTH / width))
+    FigureCanvasAgg(figure)  # measures all its words with one canvas
     figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
     words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
     figure.text(0.014, 1.0 - 0.5 / height, words, fontsize=12.5, color=MUTED, va="top", parse_math=False)

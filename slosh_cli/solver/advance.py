@@ -215,7 +215,7 @@ def _accept(model, state, rows, step):
     _settle_extremes(model, state, step)
     _follow_contacts(state)
     _copy_point(state.end, state.start)
-    settle_cells(state)
+    settle_cells(state, step)
     copy(state.energies, state.energies_before)
     copy(state.losses, state.losses_before)
     state.residual[0] = state.residual[1]

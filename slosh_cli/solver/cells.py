@@ -3,7 +3,8 @@
 Over a step the liquid is carried through the tank's own motion (its stage velocities, so that momentum balances to
 rounding) and pushes back with its mean force and moment over the step, which enter all stages alike. They are first
 estimated by carrying the liquid through the step with the tank's last acceleration; what the estimate misses of the
-impulse is handed to the next step, so no impulse is ever lost. Places and speeds are of second order in the step
+impulse is handed on, so no impulse is ever lost: to the next step where that is as long, in shares where it is shorter
+(a step however short would otherwise have to bear all of it). Places and speeds are of second order in the step
 (seen: 2.0 in smooth water, pitch too where bores run). The force's course within a step is not resolved: what
 the ledger misses falls with orders 1.5 to 0.7, a bore's arrival at a wall being a jump of the force in any step.
 """
@@ -18,7 +19,7 @@ from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
 
 # places in State.push
-FORCE, MOMENT, LEFT_FORCE, LEFT_MOMENT, OWED_FORCE, OWED_MOMENT, LOSS, DEEPEST = range(8)
+FORCE, MOMENT, LEFT_FORCE, LEFT_MOMENT, OWED_FORCE, OWED_MOMENT, LOSS, DEEPEST, LAST_STEP = range(9)
 
 
 @inner_kernel
@@ -65,8 +66,9 @@ def expect_push(model, scratch, state, step):
     if not liquid_evolve(liquid, cells.area, cells.flow, cells.depth, acceleration, step, scratch.cell_work, sums):
         return False
     pitch = start.q[CAR_PITCH] + 0.5 * step * start.v[CAR_PITCH]
-    force = (sums[0] + push[LEFT_FORCE]) / step - liquid.mass * liquid.gravity * pitch
-    moment = (sums[1] + push[LEFT_MOMENT]) / step
+    paid_over = max(step, push[LAST_STEP])
+    force = sums[0] / step + push[LEFT_FORCE] / paid_over - liquid.mass * liquid.gravity * pitch
+    moment = sums[1] / step + push[LEFT_MOMENT] / paid_over
     for i in range(COORDINATES):
         start.a[i] += (force - push[FORCE]) * model.tank_push[i] + (moment - push[MOMENT]) * model.tank_turn[i]
     push[FORCE], push[MOMENT] = force, moment
@@ -107,14 +109,15 @@ def carry_cells(model, scratch, state, step):
 
 
 @inner_kernel
-def settle_cells(state):
-    """Accept the liquid's step: its end is the next start, what is owed is left for the next step.
+def settle_cells(state, step):
+    """Accept the liquid's `step`: its end is the next start, what is owed is left for the next one.
 
     The largest depth (m) of any cell so far is kept; above the roof it is a head of pressure.
     """
     copy_cells(state.cells_end, state.cells_start)
     for i in range(state.cells_end.depth.size):
         state.push[DEEPEST] = max(state.push[DEEPEST], state.cells_end.depth[i])
+    state.push[LAST_STEP] = step
     state.push[LEFT_FORCE] = state.push[OWED_FORCE]
     state.push[LEFT_MOMENT] = state.push[OWED_MOMENT]
 

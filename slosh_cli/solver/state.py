@@ -28,7 +28,7 @@ class State(NamedTuple):
 
     `losses` (7,) J as in `ledger`, `residual` (3,): before, now, largest; `locked`, `airborne` (4,) flags;
     `locked_time` (4,) s; `least`, `largest` (4,) wheel loads (N) since onset; `surface` (1,) largest rise, m;
-    `load_sum` (2,): N s of all wheels since onset, and the s. `push` (8,): the shallow-water liquid's account with the
+    `load_sum` (2,): N s of all wheels since onset, and the s. `push` (9,): the shallow-water liquid's account with the
     wagon, see `cells`.
     """
 
@@ -166,5 +166,5 @@ def new_state(start: Point, cells: Cells, events: int, first_step: float) -> Sta
         values=np.ones(events),
         cells_start=cells,
         cells_end=Cells._make(column.copy() for column in cells),
-        push=np.zeros(8),
+        push=np.zeros(9),
     )

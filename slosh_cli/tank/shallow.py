@@ -75,22 +75,25 @@ def _keep_wet(liquid, area, mass, step, kept):
 
 
 @kernel
-def _calm_films(liquid, area, flow):
-    """Bound the speed of thin films; thicker cells are left as they are."""
+def _calm_films(liquid, area, flow, share):
+    """Bound the speed of thin films; thicker cells are left as they are.
+
+    `share` is the step over the longest one, so that what is taken is a matter of time, not of the number of steps.
+    """
     film = FILM * liquid.table.area[liquid.table.area.size - 1]
     for i in range(liquid.cells):
         if area[i] < film:
-            flow[i] *= 2.0 * area[i] * area[i] / (area[i] * area[i] + film * film)
+            flow[i] *= (2.0 * area[i] * area[i] / (area[i] * area[i] + film * film)) ** share
 
 
 @kernel
-def _euler(liquid, area, flow, mass, momentum, source, step, kept, area_end, flow_end):
+def _euler(liquid, area, flow, mass, momentum, source, step, share, kept, area_end, flow_end):
     """An explicit Euler step (s) of areas and flows under given fluxes; `kept` (cells + 1,) is scratch."""
     _keep_wet(liquid, area, mass, step, kept)
     for i in range(liquid.cells):
         area_end[i] = max(area[i] - step * (kept[i + 1] - kept[i]) / liquid.spacing, 0.0)
         flow_end[i] = flow[i] + step * (source[i] - (momentum[i + 1] - momentum[i]) / liquid.spacing)
-    _calm_films(liquid, area_end, flow_end)
+    _calm_films(liquid, area_end, flow_end, share)
 
 
 @kernel
@@ -135,20 +138,21 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             if not limit > SHORTEST_STEP:
                 return False
             step = remaining / math.ceil(remaining / limit)
-            _euler(liquid, area, flow, mass, momentum, source, step, kept, area_1, flow_1)
+            share = step / limit
+            _euler(liquid, area, flow, mass, momentum, source, step, share, kept, area_1, flow_1)
             liquid_depths(liquid, area_1, depth_1)
             speed = fluxes(liquid, area_1, flow_1, depth_1, acceleration, work, mass_2, momentum_2, source_2, push_2)
             longest = _longest_step(liquid, speed, acceleration, MOST_COURANT)
             if step <= longest:
                 break
             limit = min(longest, 0.9 * step)
-        _euler(liquid, area_1, flow_1, mass_2, momentum_2, source_2, step, kept, area_2, flow_2)
+        _euler(liquid, area_1, flow_1, mass_2, momentum_2, source_2, step, share, kept, area_2, flow_2)
         _add_impulses(liquid, area, flow, push, acceleration, 0.5 * step, sums)
         _add_impulses(liquid, area_1, flow_1, push_2, acceleration, 0.5 * step, sums)
         for i in range(liquid.cells):
             area[i] = 0.5 * (area[i] + area_2[i])
             flow[i] = 0.5 * (flow[i] + flow_2[i])
-        _calm_films(liquid, area, flow)
+        _calm_films(liquid, area, flow, share)
         liquid_depths(liquid, area, depth)
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0

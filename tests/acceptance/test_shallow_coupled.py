@@ -145,6 +145,17 @@ def at_fixed_steps(scenario, step):
     return np.array([run.state.start.q[0], run.state.start.q[CAR_PITCH], run.state.residual[2]])
 
 
+def test_however_tight_the_tolerance_a_stop_with_bores_ends(stop):
+    """Thin films at the dry end and what a step still owes the liquid must not bar short steps."""
+    found = {tolerance: stop(*case(80, 10, "shallow-water", f"solver.tolerance={tolerance}")) for tolerance in TIGHT}
+    assert [str(result.status) for result in found.values()] == ["stopped"] * len(TIGHT)
+    distances = [result.braking_distance_m for result in found.values()]
+    assert np.abs(np.diff(distances)).max() < 1e-5 * distances[-1]
+
+
+TIGHT = ("1e-5", "3e-6", "1e-6")
+
+
 @pytest.mark.parametrize(("torque", "residual", "falls"), [(2.5, 1e-6, 1.3), (5, 5e-6, 0.5)])
 def test_the_coupling_error_falls_with_the_square_of_the_macro_step(shipped, torque, residual, falls):
     """Acceptance: smooth at 2.5 kN m; at 5 kN m bores run, whose arrival at a wall no step resolves in the ledger."""

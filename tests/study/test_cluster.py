@@ -283,4 +283,4 @@ def test_a_lost_connection_ends_the_study_though_no_future_says_so(
 
 def test_both_ends_share_program_and_result_version() -> None:
     assert this_version().startswith("slosh ")
-    assert "results 1" in this_version()
+    assert "results 2" in this_version()

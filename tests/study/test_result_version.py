@@ -20,6 +20,21 @@ ANSWERS: dict[int, list[tuple[dict[str, Any], float]]] = {
         ({"tank.liquid.model": "rigid"}, 218.5250),
         ({"tank.liquid.model": "rigid", "braking.torque": "15 kN m", "contact.adhesion": "wet"}, 182.9485),
     ],
+    2: [  # steps and slopes of the shallow-water liquid are others
+        ({"braking.torque": "2.5 kN m"}, 430.0477),
+        ({"tank.coefficients": "computed"}, 218.4000),
+        ({"tank.liquid.model": "rigid"}, 218.5250),
+        ({"tank.liquid.model": "rigid", "braking.torque": "15 kN m", "contact.adhesion": "wet"}, 182.9485),
+        ({"tank.liquid.model": "shallow-water", "braking.torque": "10 kN m"}, 120.8951),
+        (
+            {
+                "tank.liquid.model": "shallow-water",
+                "braking.torque": "10 kN m",
+                "tank.baffles": [{"position": "5 m", "opening": 0.2}],
+            },
+            117.8736,
+        ),
+    ],
 }
 
 
