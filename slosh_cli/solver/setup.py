@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from slosh_cli.errors import PhysicsError
-from slosh_cli.scenario import Scenario
+from slosh_cli.scenario import Scenario, Track
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.problem import Array, Cells, Control, Model, Point
 from slosh_cli.tank.coefficients import slosh_modes
@@ -63,7 +64,7 @@ def problem(scenario: Scenario) -> Problem:
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = wagon_model(scenario.wagon, scenario.tank.bottom_height, load, carried=not flowing)
     liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
-    rail = rail_model(scenario.track, wheel_positions(scenario.wagon))
+    rail = _rail(scenario.track, tuple(wheel_positions(scenario.wagon)))
     contact = contact_model(scenario.contact, wagon.wheel_radius)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
@@ -83,6 +84,12 @@ def problem(scenario: Scenario) -> Problem:
         tank_turn=np.asarray(np.linalg.solve(wagon.mass, turn), dtype=np.float64),
     )
     return Problem(model, start, Cells(*cells), start.normal.copy())
+
+
+@lru_cache(maxsize=16)
+def _rail(track: Track, wheels: tuple[float, ...]) -> RailModel:
+    """The rail's matrices, shared by the stops of a study: nothing writes to them."""
+    return rail_model(track, np.array(wheels))
 
 
 def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:
