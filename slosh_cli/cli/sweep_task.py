@@ -43,6 +43,7 @@ class Task:
 
 
 def run(task: Task) -> ExitCode:
+    """Compute what the journal lacks, write table and figures; raises SloshError where the study cannot be begun."""
     from slosh_cli.study.journal import JOURNAL, Journal, remove
     from slosh_cli.study.lock import locked
     from slosh_cli.study.runner import plan

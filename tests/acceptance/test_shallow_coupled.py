@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import h5py
+import numba
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -16,9 +17,11 @@ from scipy.interpolate import CubicSpline
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.results.tables import summary_row
 from slosh_cli.results.validity import UNLOADING_LIMIT
-from slosh_cli.solver.cells import LEFT_FORCE
+from slosh_cli.solver.cells import FORCE, LAST_STEP, LEFT_FORCE, expect_push
+from slosh_cli.solver.events import EVENT_COUNT
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
+from slosh_cli.solver.state import new_scratch, new_state
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.table import columns
 from slosh_cli.wagon.coordinates import CAR_PITCH
@@ -154,6 +157,25 @@ def test_however_tight_the_tolerance_a_stop_with_bores_ends(stop):
 
 
 TIGHT = ("1e-5", "3e-6", "1e-6")
+
+
+@numba.njit
+def expected_push(model, scratch, state, step):
+    return expect_push(model, scratch, state, step)
+
+
+def test_a_short_step_does_not_bear_all_that_a_long_one_left_open(shipped):
+    """An impulse left open over 10 ms is paid back as a force over 10 ms: wheel loads see no blow after an event."""
+    start = problem(shipped("paper_80", "tank.liquid.model=shallow-water"))
+    scratch = new_scratch(start.start.rail.size, 0, start.cells.area.size)
+    forces = []
+    for owed in (0.0, 1.0):
+        state = new_state(start.start, start.cells, EVENT_COUNT, 1e-4)
+        state.push[LEFT_FORCE], state.push[LAST_STEP] = owed, 0.01
+        assert expected_push(start.model, scratch, state, 1e-4)
+        forces.append(state.push[FORCE])
+        start.start.a[:] = 0.0
+    assert forces[1] - forces[0] == pytest.approx(1.0 / 0.01, rel=1e-6)
 
 
 @pytest.mark.parametrize(("torque", "residual", "falls"), [(2.5, 1e-6, 1.3), (5, 5e-6, 0.5)])
