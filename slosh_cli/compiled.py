@@ -67,6 +67,14 @@ def inner_kernel(function: F) -> F:
     return _compile(function, no_cpython_wrapper=True)
 
 
+def part_kernel(function: F) -> F:
+    """Like `inner_kernel` for functions with one caller, which they become part of.
+
+    A call hands over an array as seven numbers and a state as a thousand, which costs more than the shorter kernels do.
+    """
+    return _compile(function, no_cpython_wrapper=True, forceinline=True)
+
+
 def is_cached() -> bool:
     """True when the time loop was compiled before by this very version of the sources."""
     return any(CACHE_FOLDER.rglob("*advance*.nbc"))

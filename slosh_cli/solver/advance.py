@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.compiled import inner_kernel, kernel, part_kernel
 from slosh_cli.solver.cells import FORCE, LOSS, MOMENT, cells_rise, settle_cells
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
@@ -20,7 +20,7 @@ from slosh_cli.solver.events import (
 from slosh_cli.solver.ledger import BRAKE, SLOPE, SLOSH_DAMPING, balance
 from slosh_cli.solver.method import DIAGONAL, GAMMA, OUTER
 from slosh_cli.solver.problem import LOSSES
-from slosh_cli.solver.record import record_row, step_extremes
+from slosh_cli.solver.record import interpolate, step_extremes
 from slosh_cli.solver.stage import prepare_stage, solve_stage
 from slosh_cli.solver.state import (
     EVENTS,
@@ -144,7 +144,7 @@ def _settle_extremes(model, state, step):
     state.load_sum[1] += step
 
 
-@inner_kernel
+@part_kernel
 def _record(model, state, rows, step):
     """Rows for the output instants within the step; False when the buffer cannot take them all."""
     time, interval = state.clock[TIME], model.control.interval
@@ -153,7 +153,7 @@ def _record(model, state, rows, step):
         return False
     while state.clock[NEXT_OUTPUT] <= time + step:
         part = min(max((state.clock[NEXT_OUTPUT] - time) / step, 0.0), 1.0)
-        record_row(model, state, rows[state.counts[ROWS]], time, step, part, state.counts[PHASE])
+        interpolate(model, state, rows[state.counts[ROWS]], time, step, part, state.counts[PHASE])
         rows[state.counts[ROWS], 0] = state.clock[NEXT_OUTPUT]
         state.counts[ROWS] += 1
         state.clock[NEXT_OUTPUT] = round(state.clock[NEXT_OUTPUT] / interval + 1.0) * interval
@@ -202,7 +202,7 @@ def _follow_contacts(state):
                 state.lifted[0] += 1
 
 
-@inner_kernel
+@part_kernel
 def _accept(model, state, rows, step):
     """Book the step in hand; False when the record is full and the step has to be taken again."""
     _settle_losses(state, step)

@@ -6,7 +6,7 @@ answers to unit inputs are in `scratch.response` (7, 11), the accelerations with
 
 from __future__ import annotations
 
-from slosh_cli.compiled import inner_kernel
+from slosh_cli.compiled import inner_kernel, part_kernel
 from slosh_cli.solver.dense import factor_dense, solve_dense
 from slosh_cli.solver.state import BOGIE_INPUT, INPUTS, NEWTON, PUSH_INPUT, UNKNOWNS
 from slosh_cli.track.contact import creep_force, normal_force
@@ -179,7 +179,7 @@ def _contact_gaps(model, scratch, base, point, locked, step, torque):
     return _body_acceleration(scratch, 0) - point.a[0]
 
 
-@inner_kernel
+@part_kernel
 def solve_wheels(model, scratch, work, base, point, locked, step, torque):
     """Solve the contacts for the rail's free displacements `scratch.free` (4,) under `scratch.load_before`.
 

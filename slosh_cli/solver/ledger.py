@@ -40,13 +40,14 @@ def balance(model, cells, point, energies):
         model.liquid, point.slosh, point.slosh_rate, tank_speed, q[CAR_PITCH], v[CAR_PITCH]
     )
     fill(power, 0.0)
+    slopes = point.rail.size // 2
     contact_energy = 0.0
     for i in range(WHEELS):
         spin = v[WHEEL_SPIN + i]
         power[BRAKE] += point.torque[i] * (spin - v[BOGIE_PITCH + 2 * (i // 2)])
         power[CREEP] += point.creep[i] * (speed - wagon.wheel_radius * spin)
         under = model.rail.contact[i]
-        power[SLOPE] += point.normal[i] * speed * point.rail[under + 1]
+        power[SLOPE] += point.normal[i] * speed * point.rail[slopes + under]
         approach = max(point.rail[under] - q[WHEEL_HEAVE + i], 0.0)
         contact_energy += 0.4 * model.contact.stiffness * approach**2.5
     resistance, _ = running_resistance(wagon, speed)

@@ -52,7 +52,7 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
     """Run the stop to its end. Raises Cancelled when `cancel` is set before that."""
     model, modes = problem.model, problem.start.slosh.size
     state = new_state(problem.start, problem.cells, EVENT_COUNT, FIRST_STEP)
-    scratch = new_scratch(problem.start.rail.size, modes, problem.cells.area.size)
+    scratch = new_scratch(model.rail, modes, problem.cells.area.size)
     buffer = np.empty((_most_rows(problem), SLOSH_COLUMN + 2 * modes))  # pages that stay empty cost nothing
     filled: list[Array] = []
     outcome = loop.RUNNING if loop.begin(model, scratch, state) else loop.UNSOLVED

@@ -15,7 +15,7 @@ from slosh_cli.solver.contacts import solve_wheels, wheel_forces
 from slosh_cli.solver.dense import factor_symmetric, solve_symmetric
 from slosh_cli.solver.state import BOGIE_INPUT, FACTORISATIONS, INPUTS, PUSH_INPUT, RIGHT_HAND_SIDES
 from slosh_cli.tank.modal import liquid_follow, liquid_reaction
-from slosh_cli.track.banded import solve_banded_one
+from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import prepare_rail, rail_residual
 from slosh_cli.track.vectors import fill
 from slosh_cli.wagon.coordinates import BODIES, BOGIE_PITCH, CAR_PITCH, WHEEL_HEAVE, WHEELS
@@ -28,7 +28,9 @@ RAIL_SHARE = 1e-5
 @inner_kernel
 def prepare_stage(model, scratch, work, step, speed, acceleration):
     """What all stages of implicit step `step` (s) share: rail factors, the wagon's linear part and its responses."""
-    prepare_rail(model.rail, step, speed, acceleration, scratch.rail_factors, scratch.flexibility)
+    prepare_rail(
+        model.rail, step, speed, acceleration, scratch.rail_rows, scratch.rail_factors, scratch.flexibility
+    )  # fmt: skip
     scratch.factored[0], scratch.factored[1] = speed, acceleration
     work[FACTORISATIONS] += 1
     work[RIGHT_HAND_SIDES] += 4
@@ -48,7 +50,7 @@ def prepare_stage(model, scratch, work, step, speed, acceleration):
     for i in range(WHEELS):
         scratch.response[i, WHEEL_HEAVE + i] = 1.0
         for j in range(WHEELS):
-            scratch.contact_flexibility[i, j] = scratch.flexibility[j, model.rail.contact[i]]
+            scratch.contact_flexibility[i, j] = scratch.flexibility[model.rail.contact[i], 0, j]
     scratch.response[PUSH_INPUT, 0] = 1.0
     scratch.response[BOGIE_INPUT, BOGIE_PITCH] = 1.0
     scratch.response[BOGIE_INPUT + 1, BOGIE_PITCH + 2] = 1.0
@@ -85,22 +87,22 @@ def solve_stage(model, scratch, work, base, point, locked, step, torque, push, t
     _free_accelerations(model, scratch, base, step, push, turn)
     allowed = min(RAIL_SHARE, control.local_tolerance) * control.load_scale
     for _ in range(MOST_PASSES):
-        _move(base.rail, base.rail_rate, point.rail_second, step, point.rail, point.rail_rate)
         speed, acceleration = base.v[0] + step * point.a[0], point.a[0]
         rail_residual(
-            rail, point.rail, point.rail_rate, point.rail_second, speed, acceleration, scratch.rail_parts,
+            rail, base.rail, base.rail_rate, point.rail_second, step, speed, acceleration, scratch.rail_rows,
             scratch.missing,
         )  # fmt: skip
         for i in range(WHEELS):
             scratch.missing[contact[i]] += point.normal[i]
             scratch.load_before[i] = point.normal[i]
-        solve_banded_one(scratch.rail_factors, scratch.missing)
+        solve_one(scratch.rail_factors, scratch.missing)
         work[RIGHT_HAND_SIDES] += 1
-        moved = 0.0
+        moved = deepest = 0.0
         for i in range(WHEELS):
             change = square * scratch.missing[contact[i]]
-            scratch.free[i] = point.rail[contact[i]] - change
-            moved = max(moved, abs(change))
+            place = base.rail[contact[i]] + square * point.rail_second[contact[i]]
+            scratch.free[i] = place - change
+            moved, deepest = max(moved, abs(change)), max(deepest, abs(place))
         if not solve_wheels(model, scratch, work, base, point, locked, step, torque):
             return False
         _correct_rail(scratch, point)
@@ -109,7 +111,7 @@ def solve_stage(model, scratch, work, base, point, locked, step, torque, push, t
             load_size = abs(point.normal[i] - scratch.load_before[i])
             size = max(size, moved * scratch.normal_slope[i], load_size)
         open_load = _stage_mismatch(rail, scratch, step, speed, acceleration) * size
-        open_load += _motion_mismatch(rail, point, step, point.a[0] - acceleration)
+        open_load += _motion_mismatch(rail, step, point.v[0], deepest, point.a[0] - acceleration)
         if open_load <= allowed:
             _finish(model, scratch, base, point, locked, step, torque)
             return True
@@ -137,16 +139,14 @@ def _stage_mismatch(rail, scratch, step, speed, acceleration):
 
 
 @inner_kernel
-def _motion_mismatch(rail, point, step, change):
+def _motion_mismatch(rail, step, speed, deepest, change):
     """Bound on the load (N) a pass leaves open because the wagon's acceleration changed after the rail's residual.
 
-    It acts on the rail as `m change y_r`, and through V as `2 m step change (V y_rr - y_rt)`, at most on the whole dip.
+    It acts on the rail as `m change y_r`, and through V as `2 m step change (V y_rr - y_rt)`, at most on the whole
+    dip, `deepest` (m).
     """
-    deepest = 0.0
-    for i in range(WHEELS):
-        deepest = max(deepest, abs(point.rail[rail.contact[i]]))
     wave_number = (0.25 * rail.stiffness / rail.bending_stiffness) ** 0.25
-    return 2.0 * rail.mass * abs(change) * deepest * (1.0 + 2.0 * step * abs(point.v[0]) * wave_number)
+    return 2.0 * rail.mass * abs(change) * deepest * (1.0 + 2.0 * step * abs(speed) * wave_number)
 
 
 @vector_kernel
@@ -160,14 +160,15 @@ def _move(place, rate, second, step, moved, moved_rate):
 @vector_kernel
 def _correct_rail(scratch, point):
     """The rail's accelerations after a pass: what was missing, and the wheel loads' change."""
-    missing, second = scratch.missing, point.rail_second
-    one, two, three, four = (
-        scratch.flexibility[0], scratch.flexibility[1], scratch.flexibility[2], scratch.flexibility[3],
-    )  # fmt: skip
+    missing, second, flexibility = scratch.missing, point.rail_second, scratch.flexibility
     by_one, by_two = point.normal[0] - scratch.load_before[0], point.normal[1] - scratch.load_before[1]
     by_three, by_four = point.normal[2] - scratch.load_before[2], point.normal[3] - scratch.load_before[3]
-    for i in range(second.size):
-        second[i] -= missing[i] + one[i] * by_one + two[i] * by_two + three[i] * by_three + four[i] * by_four
+    nodes = flexibility.shape[0]
+    for k in range(2):
+        these, less = second[k * nodes : (k + 1) * nodes], missing[k * nodes : (k + 1) * nodes]
+        for i in range(nodes):
+            unit = flexibility[i, k]
+            these[i] -= less[i] + unit[0] * by_one + unit[1] * by_two + unit[2] * by_three + unit[3] * by_four
 
 
 @inner_kernel

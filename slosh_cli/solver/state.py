@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from slosh_cli.solver.problem import LOSSES, Array, Cells, Point, empty_point
 from slosh_cli.tank.shallow import WORK_ROWS
+from slosh_cli.track.banded import ENTRIES
+from slosh_cli.track.mem import RailModel
+from slosh_cli.track.moving import MATRICES
 from slosh_cli.wagon.coordinates import BODIES, COORDINATES, WHEELS
 
 # places in State.clock
@@ -62,10 +65,10 @@ class Scratch(NamedTuple):
     """Work space of the kernels; nothing in it outlives a step."""
 
     base: Point
+    rail_rows: Array
     rail_factors: Array
     flexibility: Array
     missing: Array
-    rail_parts: Array
     rail_error: Array
     rail_error_rate: Array
     rail_zero: Array
@@ -101,13 +104,14 @@ class Scratch(NamedTuple):
     cell_sums: Array
 
 
-def new_scratch(unknowns: int, modes: int, cells: int) -> Scratch:
-    """Work space for a rail of `unknowns` and a liquid of `modes` and `cells`."""
+def new_scratch(rail: RailModel, modes: int, cells: int) -> Scratch:
+    """Work space for a `rail` and a liquid of `modes` and `cells`."""
+    unknowns = 2 * rail.nodes
     return Scratch(
         base=empty_point(unknowns, modes),
-        rail_factors=np.zeros((7, unknowns)),
-        flexibility=np.zeros((WHEELS, unknowns)),
-        rail_parts=np.zeros((3, unknowns)),
+        rail_rows=np.zeros((rail.runs.shape[0], MATRICES)),
+        rail_factors=np.zeros((ENTRIES, rail.nodes)),
+        flexibility=np.zeros((rail.nodes, 2, WHEELS)),
         **{name: np.zeros(unknowns) for name in _RAIL_VECTORS},
         slosh_zero=np.zeros(modes),
         linear=np.zeros((BODIES, BODIES)),

@@ -7,7 +7,7 @@ implicit method of order 2, L-stable, with an embedded third-order companion: R.
 
 from __future__ import annotations
 
-from slosh_cli.compiled import inner_kernel, vector_kernel
+from slosh_cli.compiled import inner_kernel, part_kernel, vector_kernel
 from slosh_cli.solver.cells import FORCE, MOMENT, OWED_FORCE, carry_cells, expect_push
 from slosh_cli.solver.contacts import respond
 from slosh_cli.solver.dense import solve_symmetric
@@ -15,7 +15,7 @@ from slosh_cli.solver.ledger import balance
 from slosh_cli.solver.method import DIAGONAL, ERROR_END, ERROR_MIDDLE, ERROR_START, GAMMA, OUTER
 from slosh_cli.solver.stage import prepare_stage, solve_stage
 from slosh_cli.solver.state import PHASE, RIGHT_HAND_SIDES
-from slosh_cli.track.banded import solve_banded_one
+from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import rail_residual
 from slosh_cli.track.vectors import copy
 from slosh_cli.wagon.brake import brake_torque
@@ -58,7 +58,7 @@ def _extrapolate(start, middle, end):
         end[i] = start[i] + (middle[i] - start[i]) / GAMMA
 
 
-@inner_kernel
+@part_kernel
 def take_step(model, scratch, state, time, step):
     """Try a step of `step` (s) from `state.start` at `time` (s).
 
@@ -105,7 +105,7 @@ def _difference(start, middle, end, step, result):
         result[i] = step * (ERROR_START * start[i] + ERROR_MIDDLE * middle[i] + ERROR_END * end[i])
 
 
-@inner_kernel
+@part_kernel
 def _rail_error(model, scratch, work, start, middle, end, step, implicit, place):
     """Rail part of the filtered error: accelerations-like vector into `scratch.missing`, places into `place`."""
     rail = model.rail
@@ -114,8 +114,10 @@ def _rail_error(model, scratch, work, start, middle, end, step, implicit, place)
     _difference(start.rail_second, middle.rail_second, end.rail_second, step, error_rate)
     for i in range(error.size):
         error[i] *= -implicit
-    rail_residual(rail, error, scratch.rail_zero, error_rate, end.v[0], end.a[0], scratch.rail_parts, scratch.missing)
-    solve_banded_one(scratch.rail_factors, scratch.missing)
+    rail_residual(
+        rail, error, scratch.rail_zero, error_rate, 0.0, end.v[0], end.a[0], scratch.rail_rows, scratch.missing
+    )  # fmt: skip
+    solve_one(scratch.rail_factors, scratch.missing)
     work[RIGHT_HAND_SIDES] += 1
     for i in range(WHEELS):
         under = rail.contact[i]
@@ -154,7 +156,7 @@ def _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, ri
     return size
 
 
-@inner_kernel
+@part_kernel
 def _error(model, scratch, work, start, middle, end, locked, step):
     """Error of the step over the allowed one, filtered by `(1 - d J)^-1` so that stiff parts do not rule it."""
     control, wagon = model.control, model.wagon

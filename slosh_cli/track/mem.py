@@ -14,25 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.scenario import Track
+from slosh_cli.track.banded import END, ENTRIES, FIRST, factor_rows, solve_four
 
 Array = NDArray[np.float64]
-HALF_BAND = 3
-"""Diagonals on either side of the main one in every rail matrix."""
+MASS, TENSION, DRIFT, BENDING, TWIST, FORMS = range(0, 6 * ENTRIES, ENTRIES)
+"""Where each form's entries begin in `RailModel.forms`."""
 
 
 class RailModel(NamedTuple):
-    """Semi-discrete rail. Unknowns (n,): slope at the left end, deflection and slope node by node, last slope.
+    """Semi-discrete rail. Unknowns (2 n,): the deflections of all n nodes, then their slopes.
 
-    The five forms are stored by diagonals, `form[HALF_BAND + j - i, i]`, shape (7, n), with N the shape functions:
-    `mass_form` INT N N, `tension_form` INT N' N', `drift_form` INT N N', `bending_form` INT N'' N'',
-    `twist_form` INT N' N''. `contact` (4,) are the unknowns under wheels 1 to 4; the slope follows each.
+    Five forms, one after the other in rows of nodes as `banded` describes them: `forms` (r, 60) for `runs` (r, 4). With
+    N the shape functions they are `MASS` INT N N, `TENSION` INT N' N', `DRIFT` INT N N', `BENDING` INT N'' N'', `TWIST`
+    INT N' N''. The deflection at either end is held: its rows are zero but for a mass of its own, so that it stays
+    at zero. `contact` (4,) are the nodes under wheels 1 to 4.
     """
 
-    mass_form: Array
-    tension_form: Array
-    drift_form: Array
-    bending_form: Array
-    twist_form: Array
+    runs: NDArray[np.uint64]
+    forms: Array
     contact: NDArray[np.int64]
     mass: float  # kg/m
     bending_stiffness: float  # N m^2
@@ -41,6 +40,20 @@ class RailModel(NamedTuple):
     damping: float  # N s/m^2
     shear_damping: float  # N s
 
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return int(self.runs[-1, END])
+
+
+def _spans(wheels: Array, length: float, element_length: float) -> tuple[Array, NDArray[np.int64]]:
+    """Ends (m, ascending) of the spans between wheels and domain ends, and their numbers of elements."""
+    middle = 0.5 * (wheels.max() + wheels.min())
+    fixed = np.concatenate([[middle - 0.5 * length], np.sort(wheels), [middle + 0.5 * length]])
+    if np.any(np.diff(fixed) <= 0):
+        raise ValueError(f"the wheels do not fit into a domain of {length} m")
+    return fixed, np.maximum(np.rint(np.diff(fixed) / element_length).astype(np.int64), 1)
+
 
 def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
     """Nodes (m, ascending) of a domain of `length` centred on the wheels, one node at every wheel.
@@ -48,13 +61,10 @@ def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
     Between fixed points the number of elements is the rounded quotient, so elements differ from
     `element_length` by what the wheel spacing demands. Raises ValueError where the wheels do not fit.
     """
-    middle = 0.5 * (wheels.max() + wheels.min())
-    fixed = np.concatenate([[middle - 0.5 * length], np.sort(wheels), [middle + 0.5 * length]])
-    if np.any(np.diff(fixed) <= 0):
-        raise ValueError(f"the wheels do not fit into a domain of {length} m")
+    fixed, elements = _spans(wheels, length, element_length)
     pieces = [
-        np.linspace(left, right, max(1, round((right - left) / element_length)), endpoint=False)
-        for left, right in pairwise(fixed)
+        np.linspace(left, right, number, endpoint=False)
+        for (left, right), number in zip(pairwise(fixed), elements, strict=True)
     ]
     return np.concatenate([*pieces, fixed[-1:]])
 
@@ -78,28 +88,37 @@ def _element_forms(lengths: Array) -> Array:
     return np.array([np.einsum("ign,jgn,gn->nij", left, right, w) for left, right in pairs])
 
 
+def _rows(forms: Array, left: int | None, right: int | None) -> Array:
+    """The rows (60,) of a node between elements of the spans `left` and `right`; without one it is an end."""
+    rows = np.zeros((len(forms), 2, 6))
+    if left is not None:
+        rows[:, :, :4] += forms[:, left, 2:]
+    if right is not None:
+        rows[:, :, 2:] += forms[:, right, :2]
+    if left is None or right is None:
+        rows[:, 0] = 0.0
+        rows[0, 0, 2] = 1.0
+    return rows.ravel()
+
+
 def rail_model(track: Track, wheels: Array) -> RailModel:
     """Assemble the rail under `wheels` (m, positions of wheels 1 to 4 relative to the wagon's centre)."""
-    nodes = fitted_nodes(wheels, track.domain.length, track.domain.element_length)
-    unknowns = 2 * nodes.size - 2  # the deflection at either end is held at zero
-    forms = np.zeros((5, 2 * HALF_BAND + 1, unknowns))
-    # unknown k of node i (k = 0 deflection, 1 slope); -1 where held
-    numbers = np.arange(2 * nodes.size).reshape(-1, 2) - 1
-    numbers[-1] = -1, unknowns - 1
-    places = np.hstack([numbers[:-1], numbers[1:]])
-    rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
-    free = (rows >= 0) & (columns >= 0)
-    bands = HALF_BAND + columns[free] - rows[free]
-    for form, of_elements in zip(forms, _element_forms(np.diff(nodes)), strict=True):
-        np.add.at(form, (bands, rows[free]), of_elements[free])
-    contact = np.array([numbers[np.argmin(np.abs(nodes - wheel)), 0] for wheel in wheels], dtype=np.int64)
+    fixed, elements = _spans(wheels, track.domain.length, track.domain.element_length)
+    of_spans = _element_forms(np.diff(fixed) / elements)
+    ends, spans = np.cumsum([0, *elements]), len(elements)
+    bounds, forms = [], []
+    for span, (first, end) in enumerate(pairwise(ends)):
+        bounds += [(first, first + 1), (first + 1, end)]
+        forms += [_rows(of_spans, span - 1 if span else None, span), _rows(of_spans, span, span)]
+    bounds.append((ends[-1], ends[-1] + 1))
+    forms.append(_rows(of_spans, spans - 1, None))
+    runs = np.array([(first, end, max(first - 1, 0), min(first + 1, ends[-1])) for first, end in bounds])
+    filled = runs[:, FIRST] < runs[:, END]
+    contact = ends[np.searchsorted(fixed, wheels)]
     foundation = track.foundation
     return RailModel(
-        mass_form=forms[0],
-        tension_form=forms[1],
-        drift_form=forms[2],
-        bending_form=forms[3],
-        twist_form=forms[4],
+        runs=runs[filled].astype(np.uint64),
+        forms=np.array(forms)[filled],
         contact=contact,
         mass=track.rail.mass_per_length,
         bending_stiffness=track.rail.youngs_modulus * track.rail.second_moment,
@@ -115,28 +134,23 @@ def critical_speed(rail: RailModel) -> float:
     return float(np.sqrt((rail.shear_stiffness + 2 * np.sqrt(rail.stiffness * rail.bending_stiffness)) / rail.mass))
 
 
-def steady_matrix(rail: RailModel, speed: float) -> Array:
-    """Banded K of model section 6 at constant `speed` (m/s), laid out like the forms; (7, n)."""
+def steady_rows(rail: RailModel, speed: float) -> Array:
+    """Rows (r, 12) of the K of model section 6 at constant `speed` (m/s)."""
+    mass, stretch, drift, bend, twist = np.split(rail.forms, len(range(0, FORMS, ENTRIES)), axis=1)
     tension = rail.shear_stiffness - rail.mass * speed**2
     return (
-        rail.bending_stiffness * rail.bending_form
-        + rail.stiffness * rail.mass_form
-        + tension * rail.tension_form
-        - rail.damping * speed * rail.drift_form
-        - rail.shear_damping * speed * rail.twist_form
+        rail.bending_stiffness * bend
+        + rail.stiffness * mass
+        + tension * stretch
+        - rail.damping * speed * drift
+        - rail.shear_damping * speed * twist
     )
 
 
 def steady_shapes(rail: RailModel, speed: float) -> Array:
-    """Steady rail shapes (n, 4) at constant `speed` (m/s) under a downward unit force at each wheel, m/N."""
-    from scipy.linalg import solve_banded
-
-    banded = steady_matrix(rail, speed)
-    size = banded.shape[1]
-    diagonals = np.zeros((2 * HALF_BAND + 1, size))
-    for offset in range(-HALF_BAND, HALF_BAND + 1):  # LAPACK stores a diagonal by columns
-        rows = np.arange(max(0, -offset), min(size, size - offset))
-        diagonals[HALF_BAND - offset, rows + offset] = banded[HALF_BAND + offset, rows]
-    loads = np.zeros((size, rail.contact.size))
-    loads[rail.contact, np.arange(rail.contact.size)] = -1.0
-    return np.asarray(solve_banded((HALF_BAND, HALF_BAND), diagonals, loads))
+    """Steady rail shapes (2 n, 4) at constant `speed` (m/s) under a downward unit force at each wheel, m/N."""
+    factors, loads = np.zeros((ENTRIES, rail.nodes)), np.zeros((rail.nodes, 2, rail.contact.size))
+    loads[rail.contact, 0, np.arange(rail.contact.size)] = -1.0
+    factor_rows(rail.runs, steady_rows(rail, speed), factors)
+    solve_four(factors, loads)
+    return loads.transpose(1, 0, 2).reshape(2 * rail.nodes, -1)

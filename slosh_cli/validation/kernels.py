@@ -28,10 +28,10 @@ def creep_force(model: ContactModel, normal: float, slip: float, speed: float) -
 
 
 def rail_residual(rail: RailModel, y: Array, speed: float) -> Array:
-    """Nodal forces (n,) that hold the rail in the steady shape `y` (n,) at constant `speed` in m/s."""
+    """Nodal forces (2 n,) that hold the rail in the steady shape `y` (2 n,) at constant `speed` in m/s."""
     kernel: Any = moving.rail_residual
     still, residual = np.zeros_like(y), np.zeros_like(y)
-    kernel(rail, y, still, still, speed, 0.0, np.zeros((3, y.size)), residual)
+    kernel(rail, y, still, still, 0.0, speed, 0.0, np.zeros((len(rail.runs), moving.MATRICES)), residual)
     return residual
 
 

@@ -17,11 +17,10 @@ from slosh_cli.study.runner import Workers, plan, run_study
 from slosh_cli.study.threads import Threads, warm_up
 
 from .conftest import ROUNDS
-from .same_stop import scenario, stopped
+from .same_stop import UNRECORDED, scenario, stopped
 
 DOMAIN = 44.0
 """Rail under the wagon, m: 50 elements of it are the longest allowed, half a wheelbase."""
-UNRECORDED = "100 s"
 
 
 def growth(benchmark: Any, by: str, count: float, *overrides: str) -> None:
@@ -47,7 +46,7 @@ def test_modes(benchmark: Any, modes: int) -> None:
 @pytest.mark.parametrize("interval", [1.0, 10.0, 100.0])
 def test_output_interval(benchmark: Any, in_turns: Callable[..., None], interval: float) -> None:
     """Beside the same stop without any row but the last."""
-    case, silent = scenario(f"output.interval={interval} ms"), scenario(f"output.interval={UNRECORDED}")
+    case, silent = scenario(f"output.interval={interval} ms"), scenario(UNRECORDED)
     in_turns(lambda: stopped(case), lambda: stopped(silent))
     benchmark.extra_info |= {"kind": "recording", "interval_ms": interval}
 

@@ -1,7 +1,7 @@
 """The floor: banded factorisations and solves alone, by LAPACK and by the program's own kernels, in compiled loops.
 
 LAPACK's routines are called through the addresses that scipy publishes for Cython; nothing of Python is in the loops.
-Each repeat starts from a fresh copy of the matrix; a loop with the copies alone is timed beside and taken off.
+Where a repeat starts from a fresh copy, a loop with the copies alone is timed beside and taken off.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import numpy as np
 from numba.extending import get_cython_function_address
 from numpy.typing import NDArray
 
-from slosh_cli.track.banded import factor_banded, solve_banded_four, solve_banded_one
+from slosh_cli.track.banded import factor_rows, solve_four, solve_one
+from slosh_cli.track.mem import RailModel
 
 Array = NDArray[np.float64]
 BAND = 3
@@ -55,31 +56,30 @@ def _lapack_solve(work, pivots, numbers, letter, right, fresh, repeats):
 
 
 @numba.njit(error_model="numpy")
-def _own_factor(matrix, work, repeats):
+def _own_factor(runs, rows, factors, repeats):
     for _ in range(repeats):
-        work[:] = matrix
-        factor_banded(work)
+        factor_rows(runs, rows, factors)
 
 
 @numba.njit(error_model="numpy")
 def _own_four(factors, right, fresh, repeats):
     for _ in range(repeats):
         right[:] = fresh
-        solve_banded_four(factors, right)
+        solve_four(factors, right)
 
 
 @numba.njit(error_model="numpy")
 def _own_one(factors, right, fresh, repeats):
     for _ in range(repeats):
         right[:] = fresh
-        solve_banded_one(factors, right)
+        solve_one(factors, right)
 
 
 @numba.njit(error_model="numpy")
-def _copies(matrix, work, repeats):
+def _copies(fresh, work, repeats):
     for k in range(repeats):
-        work[:] = matrix
-        work[0, 0] += k  # so that the copies cannot be merged into one
+        work[:] = fresh
+        work.ravel()[0] += k  # so that the copies cannot be merged into one
 
 
 @dataclass(frozen=True)
@@ -105,31 +105,36 @@ def _seconds(loop: Callable[[int], None], repeats: int, rounds: int) -> float:
     return median(found)
 
 
-def own_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
-    """Costs of the program's kernels for a rail matrix stored by diagonals, (7, n), entry (i, j) at [3 + j - i, i]."""
-    n = banded.shape[1]
-    work, four, one = np.empty_like(banded), np.empty((4, n)), np.empty(n)
+def own_costs(rail: RailModel, rows: Array, repeats: int = 100, rounds: int = 101) -> Costs:
+    """Costs of the program's kernels for the matrix of `rail` that `rows` (r, 12) describe."""
+    factors, four, one = np.empty((12, rail.nodes)), np.empty((rail.nodes, 2, 4)), np.empty(2 * rail.nodes)
     ones = [np.ones_like(four), np.ones_like(one)]
     idle = [
-        _seconds(lambda k, pair=pair: _copies(*pair, k), repeats, rounds)
-        for pair in ((banded, work), (ones[0], four), (ones[1][None], one[None]))
+        _seconds(lambda k, pair=pair: _copies(*pair, k), repeats, rounds) for pair in ((ones[0], four), (ones[1], one))
     ]
-    factors = banded.copy()
-    factor_banded(factors)
     return Costs(
-        _seconds(lambda k: _own_factor(banded, work, k), repeats, rounds) - idle[0],
-        _seconds(lambda k: _own_four(factors, four, ones[0], k), repeats, rounds) - idle[1],
-        _seconds(lambda k: _own_one(factors, one, ones[1], k), repeats, rounds) - idle[2],
+        _seconds(lambda k: _own_factor(rail.runs, rows, factors, k), repeats, rounds),
+        _seconds(lambda k: _own_four(factors, four, ones[0], k), repeats, rounds) - idle[0],
+        _seconds(lambda k: _own_one(factors, one, ones[1], k), repeats, rounds) - idle[1],
     )
 
 
-def lapack_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
-    """Costs of `dgbtrf` and `dgbtrs` for the same matrix."""
-    n = banded.shape[1]
+def node_by_node(rail: RailModel, rows: Array) -> Array:
+    """The same matrix in full, deflection and slope in turns: three diagonals either side, as LAPACK would have it."""
+    full = np.zeros((rail.nodes, 2, rail.nodes + 2, 2))  # a node of zeros beyond either end
+    for (first, end, *_), row in zip(rail.runs.astype(int), rows.reshape(-1, 2, 3, 2), strict=True):
+        for node in range(first, end):
+            full[node, :, node : node + 3] = row
+    return full[:, :, 1:-1].reshape(2 * rail.nodes, -1)
+
+
+def lapack_costs(matrix: Array, repeats: int = 100, rounds: int = 101) -> Costs:
+    """Costs of `dgbtrf` and `dgbtrs` for a full `matrix` (n, n) whose entries lie within the band."""
+    n = len(matrix)
     stored = np.zeros((n, 3 * BAND + 1))  # columns of LAPACK's band storage, one after the other
     for i in range(n):
         for j in range(max(0, i - BAND), min(n, i + BAND + 1)):
-            stored[j, 2 * BAND + i - j] = banded[BAND + j - i, i]
+            stored[j, 2 * BAND + i - j] = matrix[i, j]
     numbers, letter = np.array([n, BAND, 3 * BAND + 1, 0, 4], dtype=np.int32), np.array([ord("N")], dtype=np.uint8)
     work, pivots = np.empty_like(stored), np.zeros(n, dtype=np.int32)
     four, one = np.empty((4, n)), np.empty((1, n))
@@ -147,16 +152,7 @@ def lapack_costs(banded: Array, repeats: int = 100, rounds: int = 101) -> Costs:
             _lapack_solve(work, pivots, numbers, letter, right, ones, k)
 
         solves.append(_seconds(solve, repeats, rounds) - copied)
-    exact = np.linalg.solve(_dense(banded), np.ones(n))
+    exact = np.linalg.solve(matrix, np.ones(n))
     if numbers[3] != 0 or not np.allclose(one[0], exact, rtol=1e-8, atol=1e-8 * np.abs(exact).max()):
         raise ArithmeticError("LAPACK did not solve the rail's equations")
     return Costs(factor, *solves)
-
-
-def _dense(banded: Array) -> Array:
-    n = banded.shape[1]
-    dense = np.zeros((n, n))
-    for i in range(n):
-        for j in range(max(0, i - BAND), min(n, i + BAND + 1)):
-            dense[i, j] = banded[BAND + j - i, i]
-    return dense

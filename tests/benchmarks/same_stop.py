@@ -15,6 +15,8 @@ from slosh_cli.scenario import Scenario
 from slosh_cli.track.mem import fitted_nodes
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "paper_160.yaml"
+UNRECORDED = "output.interval=100 s"
+"""A stop with no row but its first and last."""
 CONVERGED = 1e-8
 """Tolerance of the stop whose distance all errors are taken from."""
 

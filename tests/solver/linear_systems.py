@@ -97,7 +97,7 @@ def march(stop, start, step):
     model, modes = stop.model, start.slosh.size
     state = new_state(start, stop.cells, EVENT_COUNT, step)
     state.airborne[:] = True
-    scratch = new_scratch(start.rail.size, modes, stop.cells.area.size)
+    scratch = new_scratch(model.rail, modes, stop.cells.area.size)
     rows = np.zeros((8, SLOSH_COLUMN + 2 * modes))
     steps = round(model.control.time_limit / step)
     assert loop.begin(model, scratch, state)
@@ -112,7 +112,7 @@ def march(stop, start, step):
 def started(stop, x, v, rail=None, rail_rate=None):
     """A point with these displacements and velocities (wagon and slosh), moving at the cruising speed on top."""
     model = stop.model
-    unknowns, modes = model.rail.mass_form.shape[1], model.liquid.mu.size
+    unknowns, modes = 2 * model.rail.nodes, model.liquid.mu.size
     start = empty_point(unknowns, modes)
     start.q[:], start.v[:] = x[:COORDINATES], v[:COORDINATES]
     start.v[0] += CRUISE

@@ -32,7 +32,7 @@ def march(stop, steps, airborne=(), first_step=1e-3):
     model, start = stop.model, stop.start
     state = new_state(start, stop.cells, EVENT_COUNT, first_step)
     state.airborne[list(airborne)] = True
-    scratch = new_scratch(start.rail.size, start.slosh.size, stop.cells.area.size)
+    scratch = new_scratch(stop.model.rail, start.slosh.size, stop.cells.area.size)
     assert loop.begin(model, scratch, state)
     rows = np.zeros((8, SLOSH_COLUMN + 2 * start.slosh.size))
     return state, loop.advance(model, scratch, state, rows, steps)

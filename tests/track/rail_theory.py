@@ -9,19 +9,15 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from slosh_cli.scenario import Domain, Foundation, Rail, Track
+from slosh_cli.track.mem import BENDING, DRIFT, TENSION, TWIST
+from slosh_cli.track.mem import MASS as MASS_FORM
 from slosh_cli.validation.exact import steady_rail
 
 WHEELS = np.array([4.0, 0.0, -2.0, -4.0])
 """Wheel 2 is the loaded one: it stands in the middle of the domain, and every spacing is a multiple of 1 m."""
 LOADED = 1
 EI, MASS, K, SHEAR = 200e9 * 3.06e-5, 60.0, 1.0e7, 666875.0
-FORMS = {
-    "mass_form": (0, 0),
-    "tension_form": (1, 1),
-    "drift_form": (0, 1),
-    "bending_form": (2, 2),
-    "twist_form": (1, 2),
-}
+FORMS = {MASS_FORM: (0, 0), TENSION: (1, 1), DRIFT: (0, 1), BENDING: (2, 2), TWIST: (1, 2)}
 """Order of the derivatives of the left and right shape function in each form."""
 
 
@@ -34,14 +30,25 @@ def track(element_length=0.5, length=80.0, shear=SHEAR, damping=0.0, shear_dampi
     )
 
 
-def dense(banded):
-    """Full matrix of a band of three diagonals either side, stored by diagonals."""
-    size = banded.shape[1]
-    full = np.zeros((size, size))
-    for i, j in product(range(size), repeat=2):
-        if abs(i - j) <= 3:
-            full[i, j] = banded[3 + j - i, i]
-    return full
+def dense(runs, rows):
+    """Full matrix (2 n, 2 n) from rows (r, 12) that are equal in each of the `runs` of nodes."""
+    nodes = int(runs[-1, 1])
+    full = np.zeros((2, nodes, 2, nodes))
+    for (first, end, *_), row in zip(runs.astype(int), rows.reshape(-1, 2, 3, 2), strict=True):
+        for node, place in product(range(first, end), (-1, 0, 1)):
+            if 0 <= node + place < nodes:
+                full[:, node, :, node + place] = row[:, place + 1]
+    return full.reshape(2 * nodes, 2 * nodes)
+
+
+def form_of(rail, form):
+    """A form of the rail as a full matrix."""
+    return dense(rail.runs, rail.forms[:, form : form + 12])
+
+
+def free(nodes):
+    """The unknowns that are not held: all but the deflections at both ends."""
+    return np.delete(np.arange(2 * nodes), [0, nodes - 1])
 
 
 def hermite(length):
@@ -51,20 +58,20 @@ def hermite(length):
 
 
 def exact_form(nodes, left, right):
-    """INT (d^left N_i) (d^right N_j) over all elements between `nodes`, ends held: rows as in the program."""
+    """INT (d^left N_i) (d^right N_j) over all elements between `nodes`, in the program's order, nothing held."""
     full = np.zeros((2 * nodes.size, 2 * nodes.size))
     for e, (a, b) in enumerate(pairwise(nodes)):
         shapes = hermite(b - a)
         for i, j in product(range(4), repeat=2):
             integral = (shapes[i].deriv(left) * shapes[j].deriv(right)).integ()
             full[2 * e + i, 2 * e + j] += integral(b - a) - integral(0.0)
-    free = [i for i in range(2 * nodes.size) if i not in (0, 2 * nodes.size - 2)]
-    return full[np.ix_(free, free)]
+    order = np.arange(2 * nodes.size).reshape(-1, 2).T.ravel()
+    return full[np.ix_(order, order)]
 
 
-def free_values(nodes, values, slopes):
-    """Nodal values and slopes in the program's order: the deflections of both ends are left out."""
-    return np.delete(np.column_stack([values, slopes]).ravel(), [0, 2 * nodes.size - 2])
+def held_values(values, slopes):
+    """Nodal values and slopes in the program's order, the deflections of both ends held at zero."""
+    return np.concatenate([[0.0], values[1:-1], [0.0], slopes])
 
 
 def closed_form(r, speed, shear=SHEAR, stiffness=K):

@@ -2,11 +2,21 @@
 
 import numpy as np
 import pytest
-from rail_theory import FORMS, WHEELS, dense, exact_form, free_values, hermite, track
+from rail_theory import FORMS, WHEELS, dense, exact_form, form_of, free, held_values, hermite, track
 
-from slosh_cli.track.banded import factor_banded, form_banded, solve_banded_four, solve_banded_one
-from slosh_cli.track.mem import fitted_nodes, rail_model, steady_matrix, steady_shapes
-from slosh_cli.track.moving import prepare_rail, rail_ledger, rail_residual
+from slosh_cli.track.banded import factor_rows, pair_sums, solve_four, solve_one, weighed
+from slosh_cli.track.mem import (
+    BENDING,
+    DRIFT,
+    MASS,
+    TENSION,
+    TWIST,
+    fitted_nodes,
+    rail_model,
+    steady_rows,
+    steady_shapes,
+)
+from slosh_cli.track.moving import MATRICES, prepare_rail, rail_ledger, rail_residual
 
 UNEVEN = np.array([6.9, 5.1, -5.1, -6.9])
 DAMPED = {"damping": 4.9e3, "shear_damping": 1.0e3}
@@ -17,38 +27,57 @@ def uneven():
     """A short damped rail with elements of several lengths, its nodes, and its exact matrices."""
     its_track = track(0.7, length=26.0, **DAMPED)
     nodes = fitted_nodes(UNEVEN, 26.0, 0.7)
-    exact = {name: exact_form(nodes, *orders) for name, orders in FORMS.items()}
+    exact = {form: exact_form(nodes, *orders) for form, orders in FORMS.items()}
     return rail_model(its_track, UNEVEN), nodes, exact
 
 
 def exact_matrices(rail, exact, V, A):
-    """M, C and K of model section 6, written out, from the exact forms."""
-    mass, stretch, drift = exact["mass_form"], exact["tension_form"], exact["drift_form"]
+    """M, C and K of model section 6, written out, from the exact forms, for the unknowns that are free."""
+    inside = np.ix_(free(rail.nodes), free(rail.nodes))
+    mass, stretch, drift, bend, twist = (exact[form][inside] for form in (MASS, TENSION, DRIFT, BENDING, TWIST))
     damping = 4.9e3 * mass + 1.0e3 * stretch - 2 * 60.0 * V * drift
-    stiffness = 6.12e6 * exact["bending_form"] + 1e7 * mass + (666875.0 - 60.0 * V**2) * stretch
-    stiffness = stiffness - (4.9e3 * V + 60.0 * A) * drift - 1.0e3 * V * exact["twist_form"]
+    stiffness = 6.12e6 * bend + 1e7 * mass + (666875.0 - 60.0 * V**2) * stretch
+    stiffness = stiffness - (4.9e3 * V + 60.0 * A) * drift - 1.0e3 * V * twist
     return 60.0 * mass, damping, stiffness
 
 
-@pytest.mark.parametrize("name", FORMS)
-def test_forms_are_the_exact_integrals(uneven, name):
+@pytest.mark.parametrize("form", FORMS)
+def test_forms_are_the_exact_integrals(uneven, form):
     rail, _, exact = uneven
-    computed = dense(getattr(rail, name))
-    assert np.abs(computed - exact[name]).max() < 1e-13 * np.abs(exact[name]).max()
+    computed, rows = form_of(rail, form), free(rail.nodes)
+    assert np.abs((computed - exact[form])[rows]).max() < 1e-13 * np.abs(exact[form]).max()
+
+
+def test_deflections_of_both_ends_are_held_by_a_mass_of_their_own(uneven):
+    rail, _, _ = uneven
+    ends = [0, rail.nodes - 1]
+    assert np.array_equal(form_of(rail, MASS)[ends], np.eye(2 * rail.nodes)[ends])
+    for form in (TENSION, DRIFT, BENDING, TWIST):
+        assert not np.any(form_of(rail, form)[ends])
+
+
+def test_rows_are_stored_once_for_all_nodes_of_an_even_mesh():
+    """Two ends, four wheels and five spans, whatever the number of elements; a span of one element has no inside."""
+    sizes = {length: rail_model(track(length), UNEVEN).forms.shape for length in (0.9, 0.5, 0.1)}
+    assert set(sizes.values()) == {(11, 60)}
+    coarse = rail_model(track(1.8, length=20.0), UNEVEN)
+    assert len(coarse.runs) == 9
+    assert np.array_equal(coarse.runs[1:, 0], coarse.runs[:-1, 1])
 
 
 def test_convection_only_turns_energy_over(uneven):
     """INT N N' is skew with both ends held: moving along the rail must not create energy."""
     rail, _, _ = uneven
-    drift = dense(rail.drift_form)
+    inside = free(rail.nodes)
+    drift = form_of(rail, DRIFT)[np.ix_(inside, inside)]
     assert np.abs(drift + drift.T).max() < 1e-14 * np.abs(drift).max()
     assert np.abs(drift).max() > 0.1
 
 
-@pytest.mark.parametrize("name", ["mass_form", "bending_form", "tension_form"])
-def test_forms_of_energies_are_symmetric_and_definite(uneven, name):
+@pytest.mark.parametrize("which", [MASS, BENDING, TENSION])
+def test_forms_of_energies_are_symmetric_and_definite(uneven, which):
     rail, _, _ = uneven
-    form = dense(getattr(rail, name))
+    form = form_of(rail, which)[np.ix_(free(rail.nodes), free(rail.nodes))]
     assert np.abs(form - form.T).max() < 1e-15 * np.abs(form).max()
     assert np.linalg.eigvalsh(form)[0] > 0
 
@@ -59,9 +88,8 @@ def test_every_wheel_stands_on_a_node_and_elements_fit_the_wheelbase(uneven):
     assert nodes[-1] == 13.0
     assert np.all(np.diff(nodes) > 0.5 * 0.7)
     assert np.all(np.diff(nodes) < 1.5 * 0.7)
-    # an unknown's node: the unknowns are slope, then deflection and slope node by node
-    assert nodes[(rail.contact + 1) // 2] == pytest.approx(UNEVEN, abs=1e-12)
-    assert np.all(rail.contact % 2 == 1)
+    assert nodes[rail.contact] == pytest.approx(UNEVEN, abs=1e-12)
+    assert rail.nodes == nodes.size
 
 
 def test_wheels_outside_the_domain_are_refused():
@@ -73,68 +101,82 @@ def test_forms_of_a_polynomial_deflection_are_its_integrals(uneven):
     """A cubic that vanishes at both ends is represented exactly, whatever the mesh."""
     rail, nodes, _ = uneven
     cubic = np.polynomial.Polynomial([-169.0, 0, 1.0]) * np.polynomial.Polynomial([1.0, 0.3]) * 1e-3
-    y = free_values(nodes, cubic(nodes), cubic.deriv()(nodes))
-    for name, (left, right) in FORMS.items():
+    y = held_values(cubic(nodes), cubic.deriv()(nodes))
+    for form, (left, right) in FORMS.items():
         integral = (cubic.deriv(left) * cubic.deriv(right)).integ()
-        expected, scale = integral(13.0) - integral(-13.0), np.abs(dense(getattr(rail, name))).max() * (y @ y)
-        assert form_banded(getattr(rail, name), y, y) == pytest.approx(expected, abs=1e-12 * scale), name
+        expected, scale = integral(13.0) - integral(-13.0), np.abs(form_of(rail, form)).max() * (y @ y)
+        computed = sum(weighed(row, form, pair_sums(run, y, y)) for run, row in zip(rail.runs, rail.forms, strict=True))
+        assert computed == pytest.approx(expected, abs=1e-12 * scale), form
 
 
 @pytest.mark.parametrize(("V", "A"), [(0.0, 0.0), (44.0, -1.5), (300.0, -40.0)])
 def test_steady_matrix_and_residual_are_those_of_the_model(uneven, V, A):
     rail, _, exact = uneven
     M, C, K = exact_matrices(rail, exact, V, A)
-    steady = exact_matrices(rail, exact, V, 0.0)[2]
-    assert np.abs(dense(steady_matrix(rail, V)) - steady).max() < 1e-12 * np.abs(steady).max()
-    rng, size = np.random.default_rng(3), M.shape[0]
-    y, rate, second = rng.normal(size=size), rng.normal(size=size), rng.normal(size=size)
-    scratch, residual = np.zeros((3, size)), np.full(size, 7.0)
-    for part in (y, rate, second):  # one at a time: none may hide behind the stiffest term
-        states = [part if part is other else np.zeros(size) for other in (y, rate, second)]
-        rail_residual(rail, *states, V, A, scratch, residual)
-        expected = K @ states[0] + C @ states[1] + M @ states[2]
-        assert np.abs(residual - expected).max() < 1e-12 * np.abs(expected).max()
+    steady, inside = exact_matrices(rail, exact, V, 0.0)[2], free(rail.nodes)
+    computed = dense(rail.runs, steady_rows(rail, V))[np.ix_(inside, inside)]
+    assert np.abs(computed - steady).max() < 1e-12 * np.abs(steady).max()
+    rng, size = np.random.default_rng(3), 2 * rail.nodes
+    y, rate, second = rng.normal(size=(3, size))
+    for vector in (y, rate, second):
+        vector[[0, rail.nodes - 1]] = 0.0
+    rows, residual = np.zeros((len(rail.runs), MATRICES)), np.full(size, 7.0)
+    for step in (0.0, 0.03):
+        for part in (y, rate, second):  # one at a time: none may hide behind the stiffest term
+            u, v, a = (part if part is other else np.zeros(size) for other in (y, rate, second))
+            rail_residual(rail, u, v, a, step, V, A, rows, residual)
+            expected = K @ (u + step**2 * a)[inside] + C @ (v + step * a)[inside] + M @ a[inside]
+            assert np.abs(residual[inside] - expected).max() < 1e-12 * np.abs(expected).max()
+            assert not np.any(residual[[0, rail.nodes - 1]])
 
 
 @pytest.mark.parametrize("h", [0.0, 1e-5, 3e-3, 0.07])
 def test_stage_matrix_is_factored_and_condensed_on_the_wheels(uneven, h):
     rail, _, exact = uneven
-    V, A, size = 44.0, -30.0, rail.mass_form.shape[1]
+    V, A, nodes, inside = 44.0, -30.0, rail.nodes, free(rail.nodes)
     M, C, K = exact_matrices(rail, exact, V, A)
-    factors, flexibility = np.zeros((7, size)), np.ones((4, size))
-    prepare_rail(rail, h, V, A, factors, flexibility)
-    under_wheels = np.zeros((size, 4))
+    factors, flexibility = np.zeros((12, nodes)), np.ones((nodes, 2, 4))
+    prepare_rail(rail, h, V, A, np.zeros((len(rail.runs), MATRICES)), factors, flexibility)
+    under_wheels = np.zeros((2 * nodes, 4))
     under_wheels[rail.contact, np.arange(4)] = 1.0
-    expected = np.linalg.solve(M + h * C + h**2 * K, under_wheels)
-    assert np.abs(flexibility.T - expected).max() < 1e-9 * np.abs(expected).max()
+    expected = np.linalg.solve(M + h * C + h**2 * K, under_wheels[inside])
+    computed = flexibility.transpose(1, 0, 2).reshape(-1, 4)
+    assert np.abs(computed[inside] - expected).max() < 1e-9 * np.abs(expected).max()
+    assert not np.any(computed[[0, nodes - 1]])
 
 
 def test_banded_solutions_agree_with_dense_ones():
-    rng = np.random.default_rng(4)
-    band = rng.normal(size=(7, 30))
-    band[3] += 9.0
-    full = dense(band)
-    for offset in (-3, -2, -1, 1, 2, 3):  # what lies outside the matrix is zero
-        band[3 + offset, [i for i in range(30) if not 0 <= i + offset < 30]] = 0.0
-    one, four = rng.normal(size=30), rng.normal(size=(4, 30))
-    expected_one, expected_four = np.linalg.solve(full, one), np.linalg.solve(full, four.T).T
-    assert form_banded(band, four[0], one) == pytest.approx(four[0] @ full @ one, rel=1e-12)
-    factors = band.copy()
-    factor_banded(factors)
-    solve_banded_one(factors, one)
-    solve_banded_four(factors, four)
+    """Runs of one node, of several, and ends whose rows reach beyond the beam."""
+    rng, nodes = np.random.default_rng(4), 30
+    bounds = [(0, 1), (1, 12), (12, 13), (13, 29), (29, 30)]
+    runs = np.array([(a, b, max(a - 1, 0), min(a + 1, nodes - 1)) for a, b in bounds], dtype=np.uint64)
+    rows = rng.normal(size=(5, 2, 6))
+    rows[:, 0, 2] += 9.0
+    rows[:, 1, 3] += 9.0
+    rows[0, :, :2] = rows[-1, :, 4:] = 0.0
+    full = dense(runs, rows)
+    one, four = rng.normal(size=2 * nodes), rng.normal(size=(nodes, 2, 4))
+    expected_one = np.linalg.solve(full, one)
+    expected_four = np.linalg.solve(full, four.transpose(1, 0, 2).reshape(-1, 4))
+    factors, rows = np.zeros((12, nodes)), rows.reshape(5, 12)
+    form = sum(weighed(row, 0, pair_sums(run, one, expected_one)) for run, row in zip(runs, rows, strict=True))
+    assert form == pytest.approx(one @ one, rel=1e-11)
+    factor_rows(runs, rows, factors)
+    solve_one(factors, one)
+    solve_four(factors, four)
     assert one == pytest.approx(expected_one, rel=1e-11, abs=1e-13)
-    assert four == pytest.approx(expected_four, rel=1e-11, abs=1e-13)
+    assert four.transpose(1, 0, 2).reshape(-1, 4) == pytest.approx(expected_four, rel=1e-11, abs=1e-13)
 
 
 def test_energies_use_the_material_velocity(uneven):
     """Kinetic energy and foundation loss of a rail in motion, by quadrature of y_t - V y_r (model section 9)."""
     rail, nodes, _ = uneven
     rng, V = np.random.default_rng(5), 44.0
-    y, rate = rng.normal(size=rail.mass_form.shape[1]), 300.0 * rng.normal(size=rail.mass_form.shape[1])
+    y, rate = rng.normal(size=2 * nodes.size), 300.0 * rng.normal(size=2 * nodes.size)
+    y[[0, nodes.size - 1]] = rate[[0, nodes.size - 1]] = 0.0
     points, weights = np.polynomial.legendre.leggauss(6)
     kinetic = elastic = loss = 0.0
-    all_y, all_rate = (np.insert(values, [0, values.size - 1], 0.0) for values in (y, rate))
+    all_y, all_rate = (values.reshape(2, -1).T.ravel() for values in (y, rate))
     for e, length in enumerate(np.diff(nodes)):
         shapes = hermite(length)
         x, w = 0.5 * length * (points + 1), 0.5 * length * weights
@@ -154,4 +196,5 @@ def test_rail_ends_do_not_move_and_unit_loads_push_down():
     rail = rail_model(track(0.5), WHEELS)
     shapes = steady_shapes(rail, 22.0)
     assert np.all(shapes[rail.contact, np.arange(4)] < 0)
-    assert abs(shapes[0]).max() < 1e-6 * abs(shapes).max()  # slope at the left end, 36 m from any load
+    assert not np.any(shapes[[0, rail.nodes - 1]])
+    assert abs(shapes[rail.nodes]).max() < 1e-6 * abs(shapes).max()  # slope at the left end, 36 m from any load

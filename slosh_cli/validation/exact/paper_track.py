@@ -44,7 +44,7 @@ def steady_deflections(track: Track, speed: float) -> tuple[Array, Array]:
 
     rail = mem.rail_model(track, WHEELS)
     nodes = mem.fitted_nodes(WHEELS, track.domain.length, track.domain.element_length)[1:-1]
-    return nodes, -mem.steady_shapes(rail, speed)[1:-1:2, LOADED]
+    return nodes, -mem.steady_shapes(rail, speed)[1 : rail.nodes - 1, LOADED]
 
 
 def at(nodes: Array, values: Array, r: float) -> float:
