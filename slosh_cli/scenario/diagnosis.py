@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
@@ -205,6 +206,12 @@ def _places_of(model: type[Part], name: str, prefix: Path = ()) -> Iterator[Path
             yield from _places_of(part, name, (*prefix, key))
         elif key == name and prefix:
             yield (*prefix, key)
+
+
+@cache
+def leaves_of(model: type[Part]) -> tuple[tuple[str, Leaf | None], ...]:
+    """Name and leaf of every field of a part; see `leaf_of`."""
+    return tuple((name, leaf_of(field)) for name, field in model.model_fields.items())
 
 
 def leaf_of(field: FieldInfo) -> Leaf | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -212,6 +213,12 @@ def _read(path: str | Path, overrides: Iterable[str]) -> Document:
     return document
 
 
+@lru_cache(maxsize=256)
+def _node_of(text: str) -> yaml.Node | None:
+    """The node of a value's text; a study gives the same few texts again and again."""
+    return yaml.SafeLoader(text).get_single_node()
+
+
 def _override(document: Document, key: str, text: str, place: str) -> None:
     """Apply one override whose value is YAML text."""
     document.overrides.append(place)
@@ -220,7 +227,7 @@ def _override(document: Document, key: str, text: str, place: str) -> None:
     path = tuple(key.split("."))
     inner = Document()
     try:
-        node = yaml.SafeLoader(text).get_single_node()
+        node = _node_of(text)
         value = _Builder(inner, place).build(node, path, node) if node is not None else None
     except (yaml.YAMLError, RecursionError) as error:
         rule, given, fix = _syntax(error, text)[1:]

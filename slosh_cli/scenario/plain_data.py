@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.diagnosis import leaf_of
+from slosh_cli.scenario.diagnosis import leaves_of
 from slosh_cli.scenario.leaves import Quantity, SIValue
 from slosh_cli.scenario.schema_run import ADHESIONS
 
@@ -17,11 +17,10 @@ def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:
     are SIValue and a number of modes that was not asked for stays away.
     """
     data: dict[str, Any] = {}
-    for name, field in type(part).model_fields.items():
+    for name, leaf in leaves_of(type(part)):
         value = getattr(part, name)
         if value is None or (name == "modes" and not _modes_count(part, as_text)):
             continue
-        leaf = leaf_of(field)
         if isinstance(leaf, Quantity):
             data[name] = f"{value!r} {leaf.unit}" if as_text else SIValue(value)
         elif isinstance(value, Part):

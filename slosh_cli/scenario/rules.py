@@ -60,9 +60,10 @@ def values_of(part: Part, prefix: str = "") -> Values:
     """All values of a validated part."""
     values: dict[str, Any] = {}
     explicit: set[str] = set()
-    for name in type(part).model_fields:
-        value, key = getattr(part, name), prefix + name
-        if name in part.model_fields_set:
+    given = part.model_fields_set
+    for name, value in vars(part).items():
+        key = prefix + name
+        if name in given:
             explicit.add(key)
         if isinstance(value, Part):
             inner = values_of(value, f"{key}.")

@@ -65,8 +65,11 @@ class Study:
         pairs = zip(self.axes, self.positions(index), strict=True)
         return {axis.key: axis.values[place] for axis, place in pairs}
 
-    def stop(self, index: int) -> Stop:
-        """Stop `index`. Raises ScenarioError where its combination of values makes no sound scenario."""
+    def stop(self, index: int, key: str | None = None) -> Stop:
+        """Stop `index`, whose key need not be found where it is known.
+
+        Raises ScenarioError where its combination of values makes no sound scenario.
+        """
         values: dict[str, Any] = dict(self.values(index))
         if self.histories:
             values["description"] = describe(self.values(index))
@@ -76,7 +79,7 @@ class Study:
             scenario = replace(self.base, values)
         except ScenarioError as error:
             raise ScenarioError(self.file, [self._placed(problem) for problem in error.problems]) from None
-        return Stop(index, stop_key(scenario), scenario, self.histories)
+        return Stop(index, key or stop_key(scenario), scenario, self.histories)
 
     def conditions(self, index: int) -> dict[str, Any]:
         """Speed in km/h, torque in kN m and model of the load of stop `index`, from its texts alone."""

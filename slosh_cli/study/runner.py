@@ -109,7 +109,7 @@ def run_study(
     if not total:
         return 0
     report(0, total)
-    stops = (study.stop(index) for index in plan.open)
+    stops = (study.stop(index, plan.keys[index]) for index in plan.open)
     with closing(workers.outcomes(stops, total, cancel)) as outcomes:
         for batch in outcomes:
             for outcome in batch:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -24,10 +23,6 @@ class HertzContact:
         """Larger and smaller semi-axis (m) of the contact ellipse under `force` (N)."""
         product = self.ellipse_area_factor * force ** (2 / 3)
         return float(np.sqrt(product * self.axis_ratio)), float(np.sqrt(product / self.axis_ratio))
-
-
-MOST_SLENDER: Final = 1e4
-"""Axis ratio of the longest contact ellipse looked for."""
 
 
 def _elliptic_integrals(axis_ratio: float) -> tuple[float, float, float]:
@@ -54,14 +49,17 @@ def _curvature_ratio(axis_ratio: float) -> float:
 
 
 def _axis_ratio(curvature_ratio: float) -> float:
-    """Axis ratio of the contact ellipse under relative curvatures of the ratio B/A, by halving the interval."""
-    low, high = 1.0, MOST_SLENDER
-    while low < (middle := 0.5 * (low + high)) < high:
-        if _curvature_ratio(middle) < curvature_ratio:
-            low = middle
-        else:
-            high = middle
-    return middle
+    """Axis ratio of the contact ellipse under relative curvatures of the ratio B/A > 1.
+
+    By secants, until rounding lets the gap shrink no further: ln B/A over ln a/b is nearly a straight line through the
+    circle's (0, 0), of slope 3/2 there.
+    """
+    target = math.log(curvature_ratio)
+    ratio, gap, following = 0.0, -target, target / 1.5
+    while abs(closer := math.log(_curvature_ratio(math.exp(following))) - target) < abs(gap):
+        step = closer * (following - ratio) / (closer - gap)
+        ratio, gap, following = following, closer, following - step
+    return math.exp(ratio)
 
 
 def hertz_contact(
