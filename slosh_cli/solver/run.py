@@ -20,8 +20,8 @@ Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
 
 STEPS_PER_CALL = 200
-MOST_ROWS = 1 << 16
-"""Rows of the record in one piece."""
+MOST_ROWS = 1 << 14
+"""Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
 FIRST_STEP = 1e-3
 """First step to try, s."""
 
