@@ -26,6 +26,7 @@ from slosh_cli.solver.state import (
     EVENTS,
     INITIAL_KINETIC,
     LAST_ERROR,
+    MIDDLE_AT,
     NEXT_OUTPUT,
     NEXT_STEP,
     ONSET_POSITION,
@@ -144,20 +145,23 @@ def _settle_extremes(model, state, step):
     state.load_sum[1] += step
 
 
+@inner_kernel
+def _has_room(model, state, rows, step):
+    """Whether `rows` can take all rows of a step of `step` (s) and the end of the run."""
+    needed = 1 + int((state.clock[TIME] + step - state.clock[NEXT_OUTPUT]) / model.control.interval)
+    return state.counts[ROWS] + max(needed, 0) + 1 <= rows.shape[0]
+
+
 @part_kernel
 def _record(model, state, rows, step):
-    """Rows for the output instants within the step; False when the buffer cannot take them all."""
+    """Rows for the output instants within the step."""
     time, interval = state.clock[TIME], model.control.interval
-    needed = 1 + int((time + step - state.clock[NEXT_OUTPUT]) / interval)
-    if state.counts[ROWS] + max(needed, 0) + 1 > rows.shape[0]:
-        return False
     while state.clock[NEXT_OUTPUT] <= time + step:
         part = min(max((state.clock[NEXT_OUTPUT] - time) / step, 0.0), 1.0)
         interpolate(model, state, rows[state.counts[ROWS]], time, step, part, state.counts[PHASE])
         rows[state.counts[ROWS], 0] = state.clock[NEXT_OUTPUT]
         state.counts[ROWS] += 1
         state.clock[NEXT_OUTPUT] = round(state.clock[NEXT_OUTPUT] / interval + 1.0) * interval
-    return True
 
 
 @inner_kernel
@@ -204,14 +208,10 @@ def _follow_contacts(state):
 
 @part_kernel
 def _accept(model, state, rows, step):
-    """Book the step in hand; False when the record is full and the step has to be taken again."""
+    """Book the step in hand."""
     _settle_losses(state, step)
     _settle_residual(state)
-    if not _record(model, state, rows, step):
-        for k in range(LOSSES):
-            state.losses[k] = state.losses_before[k]
-        state.residual[1] = state.residual[0]
-        return False
+    _record(model, state, rows, step)
     _settle_extremes(model, state, step)
     _follow_contacts(state)
     _copy_point(state.end, state.start)
@@ -220,9 +220,9 @@ def _accept(model, state, rows, step):
     copy(state.losses, state.losses_before)
     state.residual[0] = state.residual[1]
     state.clock[TIME] += step
+    state.clock[MIDDLE_AT] = (GAMMA - 1.0) * step
     state.counts[STEPS] += 1
     state.counts[STALLED] = 0
-    return True
 
 
 @inner_kernel
@@ -282,6 +282,7 @@ def _after_events(model, scratch, state):
     state.counts[STALLED] += 1
     state.clock[NEXT_STEP] = RESTART_STEP
     state.clock[LAST_ERROR] = 1.0
+    state.clock[MIDDLE_AT] = 0.0
     if not _make_consistent(model, scratch, state):
         return UNSOLVED
     if state.counts[STALLED] > MOST_STALLED:
@@ -303,6 +304,8 @@ def advance(model, scratch, state, rows, most_steps):
             if outcome != RUNNING:
                 return outcome
         step = _limited_step(model, state)
+        if not _has_room(model, state, rows, step):
+            return ROWS_FULL
         accepted = False
         tries = 0
         rejected = False
@@ -335,8 +338,7 @@ def advance(model, scratch, state, rows, most_steps):
             continue
         if not _finite(state.end):
             return NOT_FINITE
-        if not _accept(model, state, rows, step):
-            return ROWS_FULL
+        _accept(model, state, rows, step)
         state.clock[NEXT_STEP] = _next_step(step, error, state.clock[LAST_ERROR], rejected)
         state.clock[LAST_ERROR] = error
         if time + step >= next_break(model.brake, state.counts[PHASE]) * (1.0 - 1e-14):

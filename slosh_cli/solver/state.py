@@ -15,7 +15,7 @@ from slosh_cli.track.moving import MATRICES
 from slosh_cli.wagon.coordinates import BODIES, COORDINATES, WHEELS
 
 # places in State.clock
-TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC, LAST_ERROR = range(8)
+TIME, NEXT_STEP, NEXT_OUTPUT, ONSET_TIME, ONSET_POSITION, TOTAL_START, INITIAL_KINETIC, LAST_ERROR, MIDDLE_AT = range(9)
 # places in State.counts
 STEPS, REJECTED, PHASE, ROWS, STALLED = range(5)
 # places in State.work
@@ -29,6 +29,8 @@ UNKNOWNS = WHEELS + 1
 class State(NamedTuple):
     """Everything a run changes. `start`, `middle`, `end` are the stages of the step in hand.
 
+    `clock[MIDDLE_AT]` is how long after the start `middle` stands, s: before it where it is the last step's, zero where
+    something jumped in between and it says nothing.
     `losses` (7,) J as in `ledger`, `residual` (3,): before, now, largest; `locked`, `airborne` (4,) flags;
     `locked_time` (4,) s; `least`, `largest` (4,) wheel loads (N) since onset; `surface` (1,) largest rise, m;
     `load_sum` (2,): N s of all wheels since onset, and the s. `push` (9,): the shallow-water liquid's account with the
@@ -143,7 +145,7 @@ _WHEEL_VECTORS = (
 def new_state(start: Point, cells: Cells, events: int, first_step: float) -> State:
     """State at t = 0 from the initial `start` and `cells`; (events,) event values; the first step to try in s."""
     unknowns, modes = start.rail.size, start.slosh.size
-    clock = np.zeros(8)
+    clock = np.zeros(9)
     clock[NEXT_STEP] = first_step
     clock[LAST_ERROR] = 1.0
     return State(

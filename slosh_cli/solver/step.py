@@ -14,12 +14,14 @@ from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
 from slosh_cli.solver.method import DIAGONAL, ERROR_END, ERROR_MIDDLE, ERROR_START, GAMMA, OUTER
 from slosh_cli.solver.stage import prepare_stage, solve_stage
-from slosh_cli.solver.state import PHASE, RIGHT_HAND_SIDES
+from slosh_cli.solver.state import MIDDLE_AT, PHASE, RIGHT_HAND_SIDES
 from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import rail_residual
-from slosh_cli.track.vectors import copy
 from slosh_cli.wagon.brake import brake_torque
 from slosh_cli.wagon.coordinates import BODIES, CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+
+FARTHEST_GUESS = 4.0
+"""No stage is guessed from accelerations on a line that has to be drawn out to more than this many times its length."""
 
 
 @vector_kernel
@@ -43,19 +45,27 @@ def _predict_point(start, more, weight, weight_more, diagonal, base):
     )  # fmt: skip
 
 
-@inner_kernel
-def _guess(source, point):
-    """Start a stage's iteration from the accelerations and forces of another point."""
-    copy(source.a, point.a)
-    copy(source.rail_second, point.rail_second)
-    copy(source.normal, point.normal)
-
-
 @vector_kernel
-def _extrapolate(start, middle, end):
-    """Start the iteration of the last stage from the line through the first two."""
-    for i in range(end.size):
-        end[i] = start[i] + (middle[i] - start[i]) / GAMMA
+def _line(start, other, part, point):
+    """The line from `start` to `other` at its fraction `part`, into `point`."""
+    for i in range(point.size):
+        point[i] = start[i] + part * (other[i] - start[i])
+
+
+@inner_kernel
+def _guess(start, other, part, point):
+    """Start a stage's iteration from accelerations and wheel loads on the line from `start` to `other`."""
+    _line(start.a, other.a, part, point.a)
+    _line(start.rail_second, other.rail_second, part, point.rail_second)
+    _line(start.normal, other.normal, part, point.normal)
+
+
+@inner_kernel
+def _part_of_middle(state, step):
+    """Where the middle of `step` (s) lies on the line from the start to the `middle` in hand; 0 where that is far."""
+    if abs(state.clock[MIDDLE_AT]) * FARTHEST_GUESS <= GAMMA * step:
+        return 0.0
+    return GAMMA * step / state.clock[MIDDLE_AT]
 
 
 @part_kernel
@@ -75,14 +85,14 @@ def take_step(model, scratch, state, time, step):
     prepare_stage(model, scratch, work, implicit, speed, start.a[0])
     base, push = scratch.base, state.push
     _predict_point(start, start, implicit, 0.0, implicit, base)
-    _guess(start, middle)
+    _guess(start, middle, _part_of_middle(state, step), middle)
+    state.clock[MIDDLE_AT] = 0.0
     torque = brake_torque(model.brake, time + GAMMA * step, phase)
     if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0
+    state.clock[MIDDLE_AT] = GAMMA * step
     _predict_point(start, middle, OUTER * step, OUTER * step, implicit, base)
-    _extrapolate(start.a, middle.a, end.a)
-    _extrapolate(start.rail_second, middle.rail_second, end.rail_second)
-    _extrapolate(start.normal, middle.normal, end.normal)
+    _guess(start, middle, 1.0 / GAMMA, end)
     torque = brake_torque(model.brake, time + step, phase)
     if not solve_stage(model, scratch, work, base, end, locked, implicit, torque, push[FORCE], push[MOMENT]):
         return -1.0

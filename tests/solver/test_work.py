@@ -32,15 +32,15 @@ STOPS: dict[str, tuple[str, ...]] = {
 }
 COUNTS = ("steps", "rejected", "newton_iterations", "factorisations", "right_hand_sides", "events")
 MEASURED: dict[str, tuple[int, ...]] = {
-    "80 km/h, liquid": (321, 30, 1796, 354, 2586, 2),
-    "80 km/h, solid": (252, 18, 1059, 273, 1909, 2),
-    "160 km/h, liquid": (423, 34, 2661, 461, 3415, 2),
-    "160 km/h, solid": (331, 20, 1310, 355, 2482, 2),
-    "160 km/h, tight": (1298, 18, 6683, 1320, 10274, 2),
-    "shallow water": (566, 42, 2503, 611, 4276, 2),
-    "wet, wheels lock": (611, 81, 3121, 699, 4976, 6),
-    "some wheels lock": (513, 63, 2552, 583, 4151, 6),
-    "all wheels lock": (519, 54, 2597, 582, 4156, 8),
+    "80 km/h, liquid": (321, 30, 1411, 354, 2476, 2),
+    "80 km/h, solid": (252, 18, 999, 273, 1907, 2),
+    "160 km/h, liquid": (423, 34, 1838, 460, 3220, 2),
+    "160 km/h, solid": (331, 18, 1159, 352, 2460, 2),
+    "160 km/h, tight": (1299, 22, 5470, 1324, 9447, 2),
+    "shallow water": (567, 43, 2534, 613, 4288, 2),
+    "wet, wheels lock": (614, 86, 2799, 707, 4940, 6),
+    "some wheels lock": (513, 63, 2322, 583, 4075, 6),
+    "all wheels lock": (519, 54, 2288, 582, 4063, 8),
 }
 """In the order of `COUNTS`."""
 
