@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from slosh_cli.compiled import kernel
 from slosh_cli.scenario import Contact
 from slosh_cli.track.hertz import hertz_contact
@@ -70,7 +72,7 @@ def creep_force(contact, normal, slip, speed):
     falling = contact.friction * (1.0 - contact.friction_limit_ratio) * math.exp(-contact.friction_decay * abs(slip))
     mu = falling + contact.friction * contact.friction_limit_ratio
     mu_slope = -contact.friction_decay * falling
-    eps_per_slip = contact.creep_factor / (mu * rolling * normal ** (1.0 / 3.0))
+    eps_per_slip = contact.creep_factor / (mu * rolling * np.cbrt(normal))
     eps = eps_per_slip * abs(slip)
     adhesion = contact.adhesion_reduction * eps
     sliding = contact.slip_reduction * eps

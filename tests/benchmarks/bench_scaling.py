@@ -1,9 +1,12 @@
 """How the time of a stop grows with elements, modes and output, and how a study uses threads and Dask workers."""
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from statistics import median
 from threading import Event
+from time import perf_counter
 from typing import Any
 
 import pytest
@@ -45,17 +48,23 @@ def test_modes(benchmark: Any, modes: int) -> None:
 
 @pytest.mark.parametrize("interval", [1.0, 10.0, 100.0])
 def test_output_interval(benchmark: Any, in_turns: Callable[..., None], interval: float) -> None:
-    """Beside the same stop without any row but the last."""
+    """Beside the same stop without any row but the last: the time loop, and the whole call with its history."""
     case, silent = scenario(f"output.interval={interval} ms"), scenario(UNRECORDED)
-    in_turns(lambda: stopped(case), lambda: stopped(silent))
-    benchmark.extra_info |= {"kind": "recording", "interval_ms": interval}
+    loop: dict[str, list[float]] = {"loop": [], "other_loop": []}
+    in_turns(
+        lambda: loop["loop"].append(stopped(case).solve_seconds),
+        lambda: loop["other_loop"].append(stopped(silent).solve_seconds),
+        rounds=6 * ROUNDS,
+    )
+    medians = {name: median(seconds) for name, seconds in loop.items()}
+    benchmark.extra_info |= {"kind": "recording", "interval_ms": interval} | medians
 
 
 @pytest.fixture(scope="module")
 def study() -> Study:
-    """240 stops: ten speeds, twelve torques, liquid and equivalent solid."""
-    found = build(Wishes(speeds="40:85:5", torques="1:12:1"))
-    assert found.size == 240
+    """480 stops: sixteen speeds, fifteen torques, liquid and equivalent solid."""
+    found = build(Wishes(speeds="40:160:8", torques="2:30:2"))
+    assert found.size == 480
     return found
 
 
@@ -74,6 +83,21 @@ def test_two_threads(benchmark: Any, in_turns: Callable[..., None], study: Study
     warm_up(study.stop(0).scenario)
     in_turns(lambda: compute(study, Threads(2), tmp_path), lambda: compute(study, Threads(1), tmp_path), warm=False)
     benchmark.extra_info |= {"kind": "threads", "stops": study.size}
+    if hasattr(os, "sched_setaffinity"):
+        alone = [on_one_core(lambda: compute(study, Threads(1), tmp_path)) for _ in range(ROUNDS)]
+        benchmark.extra_info["one_core"] = median(alone)
+
+
+def on_one_core(work: Callable[[], None]) -> float:
+    """Seconds that `work` takes where the process has a single core (Linux)."""
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    try:
+        began = perf_counter()
+        work()
+        return perf_counter() - began
+    finally:
+        os.sched_setaffinity(0, cores)
 
 
 @pytest.fixture(params=[1, 2])
@@ -89,5 +113,5 @@ def workers(request: pytest.FixtureRequest, study: Study) -> Iterator[tuple[int,
 
 def test_dask(benchmark: Any, workers: tuple[int, Cluster], study: Study, tmp_path: Path) -> None:
     number, cluster = workers
-    benchmark.pedantic(compute, args=(study, cluster, tmp_path), rounds=1)
+    benchmark.pedantic(compute, args=(study, cluster, tmp_path), rounds=ROUNDS)
     benchmark.extra_info |= {"kind": "dask", "workers": number, "stops": study.size}

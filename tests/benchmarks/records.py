@@ -121,7 +121,8 @@ def _growth(records: list[dict[str, Any]]) -> list[Ratio]:
     rows = next((one for one in of_kind(records, "recording") if one["interval_ms"] == 10.0), None)
     return [
         Ratio("twice the elements: time / (2 x time), largest", steepest, 1.0, remark="50 to 1600 elements"),
-        Ratio("a row every 10 ms / no rows", rows["seconds"] / rows["other"] if rows else None, 1.1),
+        Ratio("a row every 10 ms / no rows, time loop", rows["loop"] / rows["other_loop"] if rows else None, 1.1),
+        Ratio("a row every 10 ms / no rows, with the history", rows["seconds"] / rows["other"] if rows else None),
     ]
 
 
@@ -131,9 +132,13 @@ def _studies(records: list[dict[str, Any]]) -> list[Ratio]:
     batch = next(iter(of_kind(records, "batch")), None)
     return [
         Ratio(
-            "one thread / two threads, 240 stops", threads["other"] / threads["seconds"] if threads else None, 1.8, True
+            "one thread / two threads, 480 stops", threads["other"] / threads["seconds"] if threads else None, 1.8, True
         ),
-        Ratio("one Dask worker / two, 240 stops", dask[1] / dask[2] if len(dask) == 2 else None),
+        Ratio(
+            "one core / two threads, 480 stops",
+            threads["one_core"] / threads["seconds"] if threads and "one_core" in threads else None,
+        ),
+        Ratio("one Dask worker / two, 480 stops", dask[1] / dask[2] if len(dask) == 2 else None),
         Ratio(
             "10,000 stops: most memory / after 1,000", batch["most_MiB"] / batch["settled_MiB"] if batch else None, 1.1
         ),
