@@ -45,9 +45,10 @@ def test_a_verdict_names_the_quickest_sound_run(contestant):
 
 def test_the_textbook_at_its_usual_step_is_told_twice():
     usual = VERDICTS["(a) textbook at 0.5 ms / slosh"]
-    (unit,) = (line for (name, _), line in CONTEST.items() if name == "e" and line[TIME] == "1")
+    quickest = [line for (name, _), line in CONTEST.items() if name == "e" and line[TIME] == "1"]  # or next to it
     assert usual["measured"] == CONTEST["a", "0.5 ms"][TIME]
-    assert usual["remark"] == f"goal 1000; slosh {unit['setting']}, error {unit['error in distance']}"
+    told = [f"goal 1000; slosh {line['setting']}, error {line['error in distance']}" for line in quickest]
+    assert usual["remark"] in told
 
 
 def test_every_contestant_has_its_name():
