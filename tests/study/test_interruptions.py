@@ -35,7 +35,7 @@ def uninterrupted(parent: Path, stops: int) -> bytes:
 
 
 def kill_at_random_moments(where: Path, stops: int, kills: int, seed: int) -> None:
-    """Start the sweep and kill it, again and again: every other time at any moment of its start, else amid the stops.
+    """Start the sweep and kill it, again and again: every fourth time at any moment of its start, else amid the stops.
 
     What the journal held before a start is still there, to the letter, and is not begun again.
     """
@@ -44,12 +44,12 @@ def kill_at_random_moments(where: Path, stops: int, kills: int, seed: int) -> No
         before = journal_rows(where / JOURNAL)
         (where / "begun.log").unlink(missing_ok=True)
         process = start_slosh(where, *sweep(stops))
-        if number % 4 == 0:
-            time.sleep(chance.uniform(0.0, 1.5))
-        else:
-            while count(where / JOURNAL) <= len(before) and process.poll() is None:
-                time.sleep(0.002)
-            time.sleep(chance.uniform(0.0, 1.5 * stops / kills * 0.01))
+        # by stops, not by seconds, so that some are left for the last session however fast they are
+        enough = len(before) + chance.randint(0, stops // kills)
+        until = time.monotonic() + (chance.uniform(0.0, 1.5) if number % 4 == 0 else 60.0)
+        while count(where / JOURNAL) <= enough and time.monotonic() < until and process.poll() is None:
+            time.sleep(0.002)
+        time.sleep(chance.uniform(0.0, 0.01))
         process.send_signal(signal.SIGKILL)
         process.communicate()
         after = journal_rows(where / JOURNAL)
