@@ -1,5 +1,23 @@
 """The command line: the only part of the program that prints and sets exit codes."""
 
-from slosh_cli.cli.shell import main
+import gc
+import os
+from collections.abc import Sequence
 
-__all__ = ["main"]
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line with `arguments` (default: those of the process); returns the exit code."""
+    _hurry()
+    from slosh_cli.cli.shell import run
+
+    return run(arguments)
+
+
+def _hurry() -> None:
+    """Spend no time on what a short-lived process does not need.
+
+    Loading libraries makes objects by the hundred thousand and no garbage; plugins of pydantic are sought in the
+    metadata of every installed package.
+    """
+    gc.set_threshold(100_000)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")

@@ -1,6 +1,5 @@
 """The error shell around the commands: exceptions in, messages and exit codes out."""
 
-import gc
 import os
 import sys
 import traceback
@@ -20,12 +19,11 @@ DEBUG: Final = "SLOSH_DEBUG"
 """Environment variable: when set, an unexpected error shows its traceback."""
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     before_dashes = words[: words.index("--")] if "--" in words else words
     _forgive_encodings()
-    _hurry()
     try:
         return _run(words)
     except Exception as error:  # the last resort: no traceback may reach the user
@@ -86,16 +84,6 @@ def _say_error(text: str, as_json: bool, **error: str) -> None:
     if as_json:
         say_json({"error": error})
     complain(text)
-
-
-def _hurry() -> None:
-    """Spend no time on what a short-lived process does not need.
-
-    Loading libraries makes objects by the hundred thousand and no garbage; plugins of pydantic are sought in the
-    metadata of every installed package.
-    """
-    gc.set_threshold(100_000)
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
 
 
 def _forgive_encodings() -> None:
