@@ -10,7 +10,7 @@ from typing import Final
 
 import typer
 
-from slosh_cli.cli.app import app
+from slosh_cli.cli.app import build
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import close_stdout, complain, say_json
 from slosh_cli.errors import ScenarioError, SloshError
@@ -35,7 +35,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
 def _run(words: list[str]) -> int:
     """Run one command; a broken pipe on the way is the reader's choice and no error."""
     try:
-        code = typer.main.get_command(app).main(args=words, prog_name="slosh", standalone_mode=False)
+        code = typer.main.get_command(build(*words[:1])).main(args=words, prog_name="slosh", standalone_mode=False)
         sys.stdout.flush()
     except (SystemExit, BrokenPipeError) as end:
         if isinstance(end, BrokenPipeError) or isinstance(end.__context__, OSError):
