@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from .conftest import ROUNDS
 from .same_stop import SCENARIO
 
 SLOSH = "import sys; from slosh_cli.cli import main; sys.exit(main())"
@@ -39,5 +40,5 @@ def test_command(
     def bare() -> None:
         subprocess.run([sys.executable, "-c", imports], check=True, capture_output=True)
 
-    in_turns(ours, bare)
+    in_turns(ours, bare, rounds=5 * ROUNDS if imports == TYPER else ROUNDS)  # a sixth of a second each
     benchmark.extra_info |= {"kind": "startup", "command": name, "beside": imports}
