@@ -136,7 +136,7 @@ def critical_speed(rail: RailModel) -> float:
 
 def steady_rows(rail: RailModel, speed: float) -> Array:
     """Rows (r, 12) of the K of model section 6 at constant `speed` (m/s)."""
-    mass, stretch, drift, bend, twist = np.split(rail.forms, len(range(0, FORMS, ENTRIES)), axis=1)
+    mass, stretch, drift, bend, twist = np.split(rail.forms, FORMS // ENTRIES, axis=1)
     tension = rail.shear_stiffness - rail.mass * speed**2
     return (
         rail.bending_stiffness * bend

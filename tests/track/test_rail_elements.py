@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from rail_theory import FORMS, WHEELS, dense, exact_form, form_of, free, held_values, hermite, track
+from rail_theory import FORMS, SHEAR, WHEELS, dense, exact_form, form_of, free, held_values, hermite, track
 
 from slosh_cli.track.banded import factor_rows, pair_sums, solve_four, solve_one, weighed
 from slosh_cli.track.mem import (
@@ -11,6 +11,7 @@ from slosh_cli.track.mem import (
     MASS,
     TENSION,
     TWIST,
+    critical_speed,
     fitted_nodes,
     rail_model,
     steady_rows,
@@ -190,6 +191,19 @@ def test_energies_use_the_material_velocity(uneven):
         strain = 6.12e6 * field(all_y, 2) ** 2 + 666875.0 * field(all_y, 1) ** 2 + 1e7 * field(all_y, 0) ** 2
         elastic += w @ (0.5 * strain)
     assert rail_ledger(rail, y, rate, V) == pytest.approx((kinetic, elastic, loss), rel=1e-11)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.9, 0.9999])
+@pytest.mark.parametrize("damping", [0.0, 1e5])
+@pytest.mark.parametrize("shear", [0.0, SHEAR, 3e6])
+def test_steady_shapes_need_no_pivoting_below_the_critical_speed(part, damping, shear):
+    """Beside a solution with pivoting, up to next to the critical speed."""
+    rail = rail_model(track(0.5, length=50.0, shear=shear, damping=damping), UNEVEN)
+    speed = part * critical_speed(rail)
+    loads = np.zeros((2 * rail.nodes, 4))
+    loads[rail.contact, np.arange(4)] = -1.0
+    expected = np.linalg.solve(dense(rail.runs, steady_rows(rail, speed)), loads)
+    assert np.abs(steady_shapes(rail, speed) - expected).max() < 1e-10 * np.abs(expected).max()
 
 
 def test_rail_ends_do_not_move_and_unit_loads_push_down():
