@@ -11,6 +11,7 @@ import queue
 import time
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator
+from contextlib import contextmanager
 from itertools import islice
 from statistics import median
 from threading import Event
@@ -40,6 +41,8 @@ _CONNECT_SECONDS: Final = 10.0
 _POLL_SECONDS: Final = 0.3
 _COUNT_SECONDS: Final = 5.0
 """How often the workers are counted: some may come later."""
+_TALKERS: Final = ("distributed", "tornado", "asyncio")
+"""Who logs a lost connection, by a traceback of whichever part noticed first."""
 
 
 class ClusterError(SloshError):
@@ -74,8 +77,7 @@ class Cluster:
             raise UsageError(text, "--cluster") from None
         self._dask: Any = distributed
         self.address = address
-        for name in ("distributed.client", "distributed.comm", "distributed.core"):  # what they say, we say
-            logging.getLogger(name).setLevel(logging.CRITICAL)
+        _silence()
         try:
             self._client: Any = self._dask.Client(
                 address, timeout=_CONNECT_SECONDS, set_as_default=False, name="slosh", direct_to_workers=False
@@ -98,7 +100,8 @@ class Cluster:
     @property
     def words(self) -> str:
         """What computes, for people."""
-        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        with self._connection():
+            workers = self._client.scheduler_info(n_workers=-1)["workers"]
         threads = sum(worker["nthreads"] for worker in workers.values())
         if not workers:
             return f"the cluster at {self.address}, which has no workers yet"
@@ -107,7 +110,7 @@ class Cluster:
     @property
     def threads(self) -> int:
         """Threads of all workers there are now, at least one."""
-        return max(int(sum(self._client.nthreads().values())), 1)
+        return max(self._all_threads(), 1)
 
     def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
         """Outcomes batch by batch, in no particular order. `cancel` gives up what is on its way and ends the iteration.
@@ -147,11 +150,16 @@ class Cluster:
     def _count_threads(self) -> None:
         now = time.monotonic()
         if now - self._counted > _COUNT_SECONDS and self._client.status == "running":
-            self._threads = sum(self._client.nthreads().values())
+            self._threads = self._all_threads()
             self._counted = now
 
+    def _all_threads(self) -> int:
+        with self._connection():
+            return int(sum(self._client.nthreads().values()))
+
     def _send(self, batch: Batch) -> None:
-        future = self._client.submit(solve_batch, batch, this_version(), pure=False)
+        with self._connection():
+            future = self._client.submit(solve_batch, batch, this_version(), pure=False)
         self._batches[future] = batch
         future.add_done_callback(self._done.put)
 
@@ -171,7 +179,8 @@ class Cluster:
             raise self._lost()
         error: Any = future.exception() if future.status == "error" else None
         if error is None:
-            outcomes: list[Outcome] = future.result()
+            with self._connection():  # the outcomes come from the worker only now, by way of the scheduler
+                outcomes: list[Outcome] = future.result()
             self._seconds.extend(max(outcome.seconds, 1e-3) for outcome in outcomes)
             yield outcomes
         elif not isinstance(error, self._dask.KilledWorker):
@@ -182,12 +191,32 @@ class Cluster:
         else:
             yield [failed(stop, "every worker that computed this stop died", final=False) for stop in batch]
 
+    @contextmanager
+    def _connection(self) -> Iterator[None]:
+        """What Dask raises where the scheduler goes away in the middle of a request, as the error it is."""
+        try:
+            yield
+        except Exception as error:
+            gone = isinstance(error, OSError | self._dask.CancelledError) or self._client.status != "running"
+            if not gone:
+                raise
+            raise self._lost() from None
+
     def _lost(self) -> ClusterError:
         return ClusterError(
             f"lost the Dask scheduler at {self.address}; every stop received before is kept: start the scheduler, "
             "then the same command again",
             "--cluster",
         )
+
+
+def _silence() -> None:
+    """Keep Dask's own lines off the terminal: what they say, we say."""
+    for name in _TALKERS:  # inherited by whatever has no level of its own
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name, logger in logging.root.manager.loggerDict.items():
+        if name.partition(".")[0] in _TALKERS and isinstance(logger, logging.Logger):
+            logger.setLevel(logging.CRITICAL)
 
 
 def _told(error: BaseException) -> SloshError:

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import logging
 import shutil
 import signal
 import subprocess
@@ -177,10 +178,12 @@ class StandIn:
 
 
 class Future:
-    """A future that has ended with a value or an error."""
+    """A future that has ended with a value or an error, or whose value is `lost` on its way."""
 
-    def __init__(self, value: Any = None, error: Exception | None = None, status: str = "") -> None:
-        self._value, self._error = value, error
+    def __init__(
+        self, value: Any = None, error: Exception | None = None, status: str = "", lost: Exception | None = None
+    ) -> None:
+        self._value, self._error, self._lost = value, error, lost
         self.status = status or ("error" if error else "finished")
 
     def add_done_callback(self, call: Any) -> None:
@@ -190,6 +193,8 @@ class Future:
         return self._error
 
     def result(self) -> Any:
+        if self._lost is not None:
+            raise self._lost
         return self._value
 
     def cancel(self) -> None:
@@ -247,6 +252,21 @@ def test_batches_grow_to_a_few_seconds_of_work_and_shrink_towards_the_end(
     assert client.batches[-1] == 1
 
 
+def test_no_part_of_dask_adds_a_traceback_of_its_own(connected: Any) -> None:
+    own = logging.getLogger("distributed.client")  # has a level of its own; a user's settings may give others one
+    own.setLevel(logging.WARNING)
+    connected(lambda *_: Future())
+    for name in (
+        "distributed.batched",
+        "distributed.comm.tcp",
+        "distributed.never_seen",
+        "tornado.application",
+        "asyncio",
+    ):
+        assert not logging.getLogger(name).isEnabledFor(logging.ERROR), name
+    assert not own.isEnabledFor(logging.ERROR)
+
+
 @pytest.mark.parametrize(
     ("error", "message"),
     [
@@ -265,6 +285,32 @@ def test_futures_that_the_scheduler_lost_end_the_study(connected: Any) -> None:
     workers, _ = connected(lambda *_: Future(status="cancelled"))
     with pytest.raises(ClusterError, match="lost the Dask scheduler"):
         outcomes(build(STUDY), workers)
+
+
+def test_outcomes_that_are_lost_on_their_way_here_end_the_study(connected: Any) -> None:
+    from distributed import CancelledError
+    from distributed.comm import CommClosedError
+
+    for error in (CommClosedError("stream is closed"), CancelledError(), TimeoutError()):
+        workers, _ = connected(lambda *_, error=error: Future(lost=error))
+        with pytest.raises(ClusterError, match="lost the Dask scheduler"):
+            outcomes(build(STUDY), workers)
+    workers, _ = connected(lambda *_: Future(lost=ValueError("not about the connection")))
+    with pytest.raises(ValueError, match="not about the connection"):
+        outcomes(build(STUDY), workers)
+
+
+@pytest.mark.parametrize("request_", ["submit", "nthreads", "scheduler_info"])
+def test_a_scheduler_lost_in_the_middle_of_a_request_is_told(connected: Any, request_: str) -> None:
+    workers, client = connected(lambda *_: Future())
+
+    def gone(*_: Any, **__: Any) -> Any:
+        client.status = "closed"
+        raise RuntimeError("Client is closed")
+
+    setattr(client, request_, gone)
+    with pytest.raises(ClusterError, match="lost the Dask scheduler"):
+        _ = workers.words if request_ == "scheduler_info" else outcomes(build(STUDY), workers)
 
 
 def test_a_lost_connection_ends_the_study_though_no_future_says_so(
