@@ -80,6 +80,19 @@ def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
     assert run.stderr.split() == []
 
 
+def test_the_end_of_the_process_looks_for_no_garbage() -> None:
+    """A search through all that pydantic built took a sixth of `slosh check`."""
+    code = (
+        "import atexit, gc; atexit.register(lambda: print(gc.get_freeze_count(), len(gc.get_objects()))); "
+        "from slosh_cli.cli import main; main(['--version']); print(gc.get_freeze_count())"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    before, at_the_end = run.stdout.splitlines()[1:]
+    frozen, watched = map(int, at_the_end.split())
+    assert before == "0"
+    assert frozen > 100 * watched
+
+
 def test_help_is_as_quick_as_the_library_it_needs() -> None:
     commands = {"ours": "from slosh_cli.cli import main; main(['--help'])", "library": "import typer"}
     best = dict.fromkeys(commands, float("inf"))
