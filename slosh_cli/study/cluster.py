@@ -160,6 +160,9 @@ class Cluster:
     def _send(self, batch: Batch) -> None:
         with self._connection():
             future = self._client.submit(solve_batch, batch, this_version(), pure=False)
+        self._await(future, batch)
+
+    def _await(self, future: Future, batch: Batch) -> None:
         self._batches[future] = batch
         future.add_done_callback(self._done.put)
 
@@ -175,7 +178,10 @@ class Cluster:
     def _received(self, future: Future) -> Iterator[list[Outcome]]:
         """The outcomes of a batch, or the batch sent again stop by stop where it killed its workers."""
         batch = self._batches.pop(future, ())
-        if future.status in ("cancelled", "lost"):
+        if future.status in ("lost", "pending"):  # its worker died with it: the scheduler has it computed again
+            self._await(future, batch)
+            return
+        if future.status == "cancelled":
             raise self._lost()
         error: Any = future.exception() if future.status == "error" else None
         if error is None:

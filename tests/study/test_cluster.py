@@ -287,6 +287,22 @@ def test_futures_that_the_scheduler_lost_end_the_study(connected: Any) -> None:
         outcomes(build(STUDY), workers)
 
 
+def test_outcomes_that_die_with_their_worker_are_computed_again(connected: Any, solver: QuickSolver) -> None:
+    class Recomputed(Future):
+        """Finished, lost with its worker, finished again."""
+
+        def add_done_callback(self, call: Any) -> None:
+            self.status = "finished" if self.status == "lost" else "lost"
+            call(self)
+
+        def result(self) -> Any:
+            assert self.status == "finished"
+            return super().result()
+
+    workers, _ = connected(lambda function, batch, needed: Recomputed(function(batch, needed)))
+    assert len({one.index for one in outcomes(build(STUDY), workers)}) == 40
+
+
 def test_outcomes_that_are_lost_on_their_way_here_end_the_study(connected: Any) -> None:
     from distributed import CancelledError
     from distributed.comm import CommClosedError
