@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 import yaml
+from pydantic import ValidationError
 
 from slosh_cli.errors import Problem, ScenarioError
+from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.document import Document, Origin
+from slosh_cli.scenario.leaves import FROM_TEXT
 from slosh_cli.scenario.plain_data import plain_data, si_values, unfold_adhesion
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.scalars import plain_scalar
@@ -172,14 +176,26 @@ def replace(scenario: R, overrides: Mapping[str, Any]) -> R:
     Keys are key paths. Numbers are SI values; texts are read as in a file (``"12 kN m"``, ``"computed"``).
     Raises ScenarioError, each problem placed at its key path.
     """
-    document = Document(plain_data(scenario, as_text=False), {(): Origin()})
+    parts = {key.partition(".")[0] for key in overrides}
+    document = _overridden(scenario, parts, overrides)
+    if not document.problems:
+        with suppress(ValidationError):
+            return type(scenario).model_validate(document.data, context=FROM_TEXT)
+    return _finish(type(scenario), _overridden(scenario, vars(scenario), overrides), scenario.name)
+
+
+def _overridden(scenario: Root, parts: Collection[str], overrides: Mapping[str, Any]) -> Document:
+    """The scenario with its `parts` as plain data and overridden; the others, valid as they are, stay as they are."""
+    values = vars(scenario).items()
+    plain = {name: plain_data(part, as_text=False) for name, part in values if isinstance(part, Part) and name in parts}
+    document = Document({**vars(scenario), **plain}, {(): Origin()})
     for key, value in overrides.items():
         if isinstance(value, str) and key not in ("name", "description"):
             _override(document, key, value, key)
         else:
             document.overrides.append(key)
             document.replace(tuple(key.split(".")), si_values(value), key)
-    return _finish(type(scenario), document, scenario.name)
+    return document
 
 
 def _is_tank_alone(data: Any) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 from slosh_cli.scenario.base import Part
@@ -60,18 +61,23 @@ def values_of(part: Part, prefix: str = "") -> Values:
     """All values of a validated part."""
     values: dict[str, Any] = {}
     explicit: set[str] = set()
-    given = part.model_fields_set
-    for name, value in vars(part).items():
-        key = prefix + name
-        if name in given:
-            explicit.add(key)
-        if isinstance(value, Part):
-            inner = values_of(value, f"{key}.")
-            values.update(inner.values)
-            explicit |= inner.explicit
-        else:
-            values[key] = value
+    _collect(part, prefix, values, explicit)
     return Values(values, frozenset(explicit))
+
+
+def _collect(part: Part, prefix: str, values: dict[str, Any], explicit: set[str]) -> None:
+    keys = _keys_of(type(part), prefix)
+    explicit.update([keys[name] for name in part.model_fields_set])
+    for name, value in vars(part).items():
+        if isinstance(value, Part):
+            _collect(value, f"{keys[name]}.", values, explicit)
+        else:
+            values[keys[name]] = value
+
+
+@cache
+def _keys_of(model: type[Part], prefix: str) -> dict[str, str]:
+    return {name: prefix + name for name in model.model_fields}
 
 
 def _finding(key: str, rule: str, given: str, fix: str) -> Finding:

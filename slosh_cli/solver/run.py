@@ -19,7 +19,8 @@ from slosh_cli.solver.state import NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_sc
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
 
-STEPS_PER_CALL = 200
+STEPS_PER_CALL = 1000
+"""Steps between two looks at progress and cancellation, some 15 ms for a modal liquid; a look needs the interpreter."""
 MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
 FIRST_STEP = 1e-3

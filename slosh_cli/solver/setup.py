@@ -8,11 +8,11 @@ from functools import lru_cache
 import numpy as np
 
 from slosh_cli.errors import PhysicsError
-from slosh_cli.scenario import Scenario, Track
+from slosh_cli.scenario import Scenario, Track, Wagon
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.problem import Array, Cells, Control, Model, Point
 from slosh_cli.tank.coefficients import slosh_modes
-from slosh_cli.tank.load import frozen_load
+from slosh_cli.tank.load import FrozenLoad, frozen_load
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 from slosh_cli.tank.still import no_cells, shallow_liquid
 from slosh_cli.track.contact import contact_model
@@ -62,7 +62,7 @@ def problem(scenario: Scenario) -> Problem:
     """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
     load = frozen_load(scenario.tank)
     flowing = scenario.tank.liquid.model == "shallow-water"
-    wagon = wagon_model(scenario.wagon, scenario.tank.bottom_height, load, carried=not flowing)
+    wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
     liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
     rail = _rail(scenario.track, tuple(wheel_positions(scenario.wagon)))
     contact = contact_model(scenario.contact, wagon.wheel_radius)
@@ -84,6 +84,12 @@ def problem(scenario: Scenario) -> Problem:
         tank_turn=np.asarray(np.linalg.solve(wagon.mass, turn), dtype=np.float64),
     )
     return Problem(model, start, Cells(*cells), start.normal.copy())
+
+
+@lru_cache(maxsize=16)
+def _wagon(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, carried: bool) -> WagonModel:
+    """The wagon's matrices, shared by the stops of a study: nothing writes to them."""
+    return wagon_model(wagon, tank_bottom_height, load, carried=carried)
 
 
 @lru_cache(maxsize=16)

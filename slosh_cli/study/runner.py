@@ -100,7 +100,7 @@ def answer(study: Study, plan: Plan, journal: Journal, index: int) -> dict[str, 
 def run_study(
     study: Study, plan: Plan, journal: Journal, workers: Workers, folder: Path, *, cancel: Event, report: Report
 ) -> int:
-    """Compute the open stops of a study, each committed to the journal as it comes; returns how many came.
+    """Compute the open stops of a study, committed to the journal as they come; returns how many came.
 
     Ends early, without losing what has come, when `cancel` is set. Raises FileError when journal or histories
     cannot be written.

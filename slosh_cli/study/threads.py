@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 _TURN = 1e-4
 """Seconds for which a thread that computes in Python may keep another from it."""
-_WAITING = 2
+_WAITING = 8
 """Stops per thread that wait their turn: a thread never idles, and memory does not grow with the study."""
+_GATHER = 0.03
+"""Seconds in which finished stops may gather: whoever keeps the books takes core and interpreter from who computes."""
 
 
 def available_cores() -> int:
@@ -49,19 +51,25 @@ class Threads:
                 for stop in stops:
                     waiting.add(pool.submit(_solve, stop, cancel))
                     if len(waiting) >= self.threads * (1 + _WAITING):
-                        done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                        done, waiting = _gathered(waiting)
                         yield _finished(done, cancel)
                     if cancel.is_set():
                         break
                 while waiting:
                     if cancel.is_set():
                         waiting = {future for future in waiting if not future.cancel()}
-                    done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                    done, waiting = _gathered(waiting)
                     yield _finished(done, cancel)
             except BaseException:
                 cancel.set()  # the pool waits for its threads: they must not go on to the end of their stops
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
+
+
+def _gathered(waiting: set[Future[Outcome]]) -> tuple[set[Future[Outcome]], set[Future[Outcome]]]:
+    """Those that have finished after a moment, at least one, and those that have not."""
+    done, open_ = wait(waiting, timeout=_GATHER)
+    return (done, open_) if done else wait(waiting, return_when=FIRST_COMPLETED)
 
 
 @contextmanager

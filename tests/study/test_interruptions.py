@@ -101,7 +101,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, num
 
 def test_a_full_disk_is_a_clear_error_and_the_study_goes_on_when_there_is_room(tmp_path: Path) -> None:
     where = folder(tmp_path, "full")
-    code, out, err = run_slosh(where, *sweep(60, "--json"), LARGEST_FILE=300_000)
+    code, out, err = run_slosh(where, *sweep(60, "--json"), LARGEST_FILE=80_000)
     assert code == 2
     error = json.loads(out)["error"]
     assert error["code"] == "file"

@@ -141,7 +141,7 @@ def test_stops_run_at_the_same_time_and_only_a_few_are_in_hand(solver: QuickSolv
     outcomes = [one for batch in Threads(3).outcomes(stops(), study.size, threading.Event()) for one in batch]
     assert len(outcomes) == 41
     assert most == 3
-    assert max(ahead) <= 3 * 3 + 1
+    assert max(ahead) <= 3 * 9 + 1
 
 
 def test_an_interrupted_study_keeps_what_is_finished_and_goes_on(solver: QuickSolver, tmp_path: Path) -> None:
@@ -174,8 +174,8 @@ def test_after_an_interrupt_no_further_stop_is_made_ready(solver: QuickSolver) -
     found = Threads(2).outcomes(stops(), study.size, cancel)
     next(found)
     cancel.set()
-    assert sum(len(batch) for batch in found) <= 6
-    assert made <= 8
+    assert sum(len(batch) for batch in found) <= 2 * 9
+    assert made <= 2 * 9 + 2 < study.size
 
 
 def test_a_journal_that_cannot_be_written_ends_the_study_at_once(
@@ -186,10 +186,11 @@ def test_a_journal_that_cannot_be_written_ends_the_study_at_once(
 
     monkeypatch.setattr(Journal, "add", full)
     before, cancel = threading.active_count(), threading.Event()
+    study = build(Wishes(speeds="20:60:1", torques="5"))
     with pytest.raises(FileError, match="disk full"):
-        carry_out(build(STUDY), tmp_path, cancel=cancel)
+        carry_out(study, tmp_path, cancel=cancel)
     assert cancel.is_set()  # what was in hand was told to end
-    assert len(solver.scenarios) < 16
+    assert len(solver.scenarios) < study.size / 2
     assert threading.active_count() == before
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from sabotages import SABOTAGES, Sabotage, edited
 
+from slosh_cli.solver import setup
 from slosh_cli.tank import longitudinal
 from slosh_cli.validation import registry, runs
 from slosh_cli.validation.data_file import read_case
@@ -31,9 +32,12 @@ def fresh(monkeypatch):
     """Nothing that was computed before the sabotage is used in it, nor the other way round."""
     monkeypatch.setattr(longitudinal, "_CACHE", longitudinal._Cache())
     monkeypatch.setattr(longitudinal, "_MOST_UNKNOWNS", 20_000)  # what does not converge gives up sooner
-    runs.stop.cache_clear()
+    computed = (runs.stop, setup._wagon, setup._rail)
+    for one in computed:
+        one.cache_clear()
     yield monkeypatch
-    runs.stop.cache_clear()
+    for one in computed:
+        one.cache_clear()
 
 
 def marked(name: str) -> object:
