@@ -19,8 +19,10 @@ from slosh_cli.solver.state import NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_sc
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
 
-STEPS_PER_CALL = 1000
-"""Steps between two looks at progress and cancellation, some 15 ms for a modal liquid; a look needs the interpreter."""
+WORK_PER_CALL = 100_000
+"""Steps times nodes between two looks at progress and cancellation: 15 ms, long beside what a look costs."""
+NODES_PER_CELL = 8
+"""Rail nodes that take the time of a cell of the liquid, more or less."""
 MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
 FIRST_STEP = 1e-3
@@ -59,8 +61,9 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
     outcome = loop.RUNNING if loop.begin(model, scratch, state) else loop.UNSOLVED
     loop.advance(model, scratch, state, buffer, 0)  # loads or compiles the machine code before the clock starts
     began = time.perf_counter()
+    steps = max(WORK_PER_CALL // (model.rail.nodes + NODES_PER_CELL * problem.cells.area.size), 10)
     while outcome in (loop.RUNNING, loop.ROWS_FULL):
-        outcome = loop.advance(model, scratch, state, buffer, STEPS_PER_CALL)
+        outcome = loop.advance(model, scratch, state, buffer, steps)
         if outcome == loop.ROWS_FULL:
             filled.append(buffer[: state.counts[ROWS]].copy())
             state.counts[ROWS] = 0

@@ -81,7 +81,12 @@ def compute(study: Study, workers: Workers, folder: Path) -> None:
 
 def test_two_threads(benchmark: Any, in_turns: Callable[..., None], study: Study, tmp_path: Path) -> None:
     warm_up(study.stop(0).scenario)
-    in_turns(lambda: compute(study, Threads(2), tmp_path), lambda: compute(study, Threads(1), tmp_path), warm=False)
+    in_turns(
+        lambda: compute(study, Threads(2), tmp_path),
+        lambda: compute(study, Threads(1), tmp_path),
+        rounds=3 * ROUNDS,
+        warm=False,
+    )
     benchmark.extra_info |= {"kind": "threads", "stops": study.size}
     if hasattr(os, "sched_setaffinity"):
         alone = [on_one_core(lambda: compute(study, Threads(1), tmp_path)) for _ in range(ROUNDS)]
