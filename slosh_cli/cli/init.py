@@ -9,7 +9,7 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import say
 from slosh_cli.errors import UsageError
 
-DEFAULT: Final = "paper-80-liquid"
+DEFAULT: Final = "tank-wagon"
 
 
 def register(app: typer.Typer) -> None:
@@ -27,7 +27,7 @@ def init(
             "--output",
             "-o",
             metavar="FILE",
-            help="File to write. Default: its own name, in the current folder.",
+            help="File to write; the scenario takes its name. Default: its own name, in the current folder.",
             show_default=False,
         ),
     ] = None,
@@ -39,14 +39,17 @@ def init(
         find_packaged,
         load_any_scenario,
         packaged_scenarios,
+        packaged_text,
     )
+    from slosh_cli.scenario.leaves import file_safe
 
     if names:
         say("\n".join(packaged_scenarios()))
         return ExitCode.DONE
     source = find_packaged(name)
-    file = output or Path(source.name)
-    _write_new(file, source.read_text(encoding="utf-8"))
+    own_name, text = packaged_text(source, file_safe(output.stem) if output else "")
+    file = output or Path(f"{own_name}.yaml")
+    _write_new(file, text)
     then = f", run it with `slosh run {file}`" if isinstance(load_any_scenario(source), Scenario) else ""
     say(f"{file} written. Change it, check it with `slosh check {file}`{then}.")
     others = [other for other, path in packaged_scenarios().items() if path != source]

@@ -36,9 +36,9 @@ def _check_exists(path: Path) -> None:
 
     if path.exists():
         return
-    files = {known: file for name, file in packaged_scenarios().items() for known in (name, file.stem, file.name)}
-    for meant in get_close_matches(path.name, files, n=1, cutoff=0.7):
-        name, file = files[meant].stem, files[meant].name
-        fix = f"`slosh init {name}` writes the packaged one to {file}, then `slosh run {file}`"
+    names = {known: name for name, file in packaged_scenarios().items() for known in (name, file.stem, file.name)}
+    for meant in get_close_matches(path.name, names, n=1, cutoff=0.7):
+        name = names[meant]
+        fix = f"`slosh init {name}` writes the packaged one to {name}.yaml, then `slosh run {name}.yaml`"
         rule = "must be the path of a scenario file"
         raise ScenarioError(str(path), [Problem(None, "", rule, "no such file", fix)])

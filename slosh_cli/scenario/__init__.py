@@ -1,5 +1,6 @@
 """Scenarios: what is simulated, read from YAML with units and checked as a whole."""
 
+from slosh_cli.scenario.given_modes import OutlivedCoefficientsError
 from slosh_cli.scenario.loader import (
     load_any_scenario,
     load_document,
@@ -9,7 +10,7 @@ from slosh_cli.scenario.loader import (
     replace,
     scenario_to_yaml,
 )
-from slosh_cli.scenario.packaged import find_packaged, packaged_scenarios
+from slosh_cli.scenario.packaged import find_packaged, packaged_scenarios, packaged_text
 from slosh_cli.scenario.schema import Scenario, TankScenario, json_schema
 from slosh_cli.scenario.schema_run import (
     Adhesion,
@@ -53,6 +54,7 @@ __all__ = [
     "Foundation",
     "HorizontalCylinder",
     "Liquid",
+    "OutlivedCoefficientsError",
     "Output",
     "Polygon",
     "Rail",
@@ -73,6 +75,7 @@ __all__ = [
     "load_scenario",
     "load_tank_scenario",
     "packaged_scenarios",
+    "packaged_text",
     "parse_quantity",
     "parse_scenario",
     "replace",

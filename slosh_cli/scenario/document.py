@@ -22,9 +22,13 @@ class Origin:
 
 @dataclass
 class Document:
-    """Mappings, lists and scalars with their `origins` by path, the `problems` and `overrides` so far."""
+    """Mappings, lists and scalars with their `origins` by path, the `problems` and `overrides` so far.
+
+    `original` is a copy of the data before any override.
+    """
 
     data: Any = None
+    original: Any = None
     origins: dict[Path, Origin] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     overrides: list[str] = field(default_factory=list)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
+from copy import deepcopy
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -15,6 +16,7 @@ from slosh_cli.errors import Problem, ScenarioError
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.document import Document, Origin
+from slosh_cli.scenario.given_modes import tank_of_file, with_own_coefficients
 from slosh_cli.scenario.leaves import FROM_TEXT
 from slosh_cli.scenario.plain_data import plain_data, si_values, unfold_adhesion
 from slosh_cli.scenario.rules import Finding
@@ -23,7 +25,7 @@ from slosh_cli.scenario.schema import Root, Scenario, TankScenario
 from slosh_cli.scenario.source import text_of
 from slosh_cli.scenario.units import plain
 
-R = TypeVar("R", bound=Root)
+R = TypeVar("R", Scenario, TankScenario)
 Place = tuple[str | int, ...]
 
 MOST_VALUES: Final = 20_000
@@ -180,15 +182,18 @@ def replace(scenario: R, overrides: Mapping[str, Any]) -> R:
     document = _overridden(scenario, parts, overrides)
     if not document.problems:
         with suppress(ValidationError):
-            return type(scenario).model_validate(document.data, context=FROM_TEXT)
-    return _finish(type(scenario), _overridden(scenario, vars(scenario), overrides), scenario.name)
+            found = type(scenario).model_validate(document.data, context=FROM_TEXT)
+            return with_own_coefficients(found, document, scenario.tank, scenario.name)
+    document = _overridden(scenario, vars(scenario), overrides)
+    found = _finish(type(scenario), document, scenario.name)
+    return with_own_coefficients(found, document, scenario.tank, scenario.name)
 
 
 def _overridden(scenario: Root, parts: Collection[str], overrides: Mapping[str, Any]) -> Document:
     """The scenario with its `parts` as plain data and overridden; the others, valid as they are, stay as they are."""
     values = vars(scenario).items()
     plain = {name: plain_data(part, as_text=False) for name, part in values if isinstance(part, Part) and name in parts}
-    document = Document({**vars(scenario), **plain}, {(): Origin()})
+    document = Document({**vars(scenario), **plain}, origins={(): Origin()})
     for key, value in overrides.items():
         if isinstance(value, str) and key not in ("name", "description"):
             _override(document, key, value, key)
@@ -211,11 +216,16 @@ def _finish(model: type[R], document: Document, file: str) -> R:
             document.add(finding)
     if scenario is None or document.problems:
         raise ScenarioError(file, document.sorted_problems())
-    return scenario
+    if document.original is None:
+        return scenario
+    return with_own_coefficients(scenario, document, tank_of_file(document, scenario.tank), file)
 
 
 def _read(path: str | Path, overrides: Iterable[str]) -> Document:
     document = _parse(text_of(Path(path)), str(path))
+    overrides = tuple(overrides)
+    if overrides:
+        document.original = deepcopy(document.data)
     for override in overrides:
         key, equals, value = override.partition("=")
         key = key.strip()

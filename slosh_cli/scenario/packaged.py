@@ -22,9 +22,17 @@ def packaged_scenarios() -> dict[str, Path]:
     """Name (as written in the file) to path of every scenario that comes with the program, sorted by name."""
     found = {}
     for path in _folder().glob("*.yaml"):
-        name = _NAME.search(path.read_text(encoding="utf-8"))
-        found[name.group(1) if name else path.stem] = path
+        found[packaged_text(path)[0]] = path
     return dict(sorted(found.items()))
+
+
+def packaged_text(path: Path, name: str = "") -> tuple[str, str]:
+    """Name and text of a packaged scenario; with a `name` the text says that instead of its own."""
+    text = path.read_text(encoding="utf-8")
+    if not name:
+        found = _NAME.search(text)
+        return (found.group(1) if found else path.stem), text
+    return name, _NAME.sub(f"name: {name}", text, count=1)
 
 
 def find_packaged(name: str) -> Path:

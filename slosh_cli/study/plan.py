@@ -6,10 +6,13 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from dataclasses import replace as copy_of
+from itertools import product
 from typing import Any, Final
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario import Scenario, parse_quantity, replace
+from slosh_cli.scenario import OutlivedCoefficientsError, Scenario, parse_quantity, replace
+from slosh_cli.scenario.given_modes import shapes_modes
+from slosh_cli.scenario.units import plain
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.key import stop_key
 
@@ -17,6 +20,7 @@ SPEED: Final = "braking.initial_speed"
 TORQUE: Final = "braking.torque"
 LIQUID: Final = "tank.liquid.model"
 SOLID: Final = "rigid"
+COEFFICIENTS: Final = "tank.coefficients"
 
 _TRIES: Final = 200
 """Combinations in which a value may prove itself before it is refused."""
@@ -78,7 +82,7 @@ class Study:
         try:
             scenario = replace(self.base, values)
         except ScenarioError as error:
-            raise ScenarioError(self.file, [self._placed(problem) for problem in error.problems]) from None
+            raise type(error)(self.file, [self._placed(problem) for problem in error.problems]) from None
         return Stop(index, key or stop_key(scenario), scenario, self.histories)
 
     def conditions(self, index: int) -> dict[str, Any]:
@@ -94,10 +98,45 @@ class Study:
         }
 
     def check(self) -> None:
-        """Raise ScenarioError for the first value of an axis that makes no sound scenario in any combination."""
+        """Raise ScenarioError for the first value of an axis that makes no sound scenario in any combination.
+
+        Given slosh coefficients that outlive their tank in any combination are refused, too.
+        """
+        self._check_coefficients()
         for number, axis in enumerate(self.axes):
             for place in range(len(axis.values)):
                 self._check_value(number, place)
+
+    def _check_coefficients(self) -> None:
+        """Raise ScenarioError where slosh coefficients would be used for another tank than the one they belong to."""
+        shaping = [number for number, axis in enumerate(self.axes) if shapes_modes(axis.key)]
+        choosing = [number for number, axis in enumerate(self.axes) if axis.key in (LIQUID, COEFFICIENTS)]
+        for number in shaping:
+            self._check_common_coefficients(self.axes[number])
+            for places in product(*(range(len(self.axes[n].values)) for n in (number, *choosing))):
+                index = self._index(dict(zip((number, *choosing), places, strict=True)))
+                try:
+                    self.stop(index)
+                except OutlivedCoefficientsError:
+                    raise
+                except ScenarioError:  # something else: `check` tells of it where no combination is sound
+                    continue
+
+    def _check_common_coefficients(self, shape: Axis) -> None:
+        """Raise ScenarioError where one list of an axis of coefficients would serve several tanks of another axis."""
+        for axis in self.axes:
+            lists = [value for value in axis.values if axis.key == COEFFICIENTS and value != "computed"]
+            if lists and len(shape.values) > 1:
+                rule = f"must be `computed` where `{shape.key}` varies, because given coefficients belong to one tank"
+                problem = Problem(None, axis.key, rule, plain(lists[0]), "write `computed`", override=axis.key)
+                raise OutlivedCoefficientsError(self.file, [self._placed(problem)])
+
+    def _index(self, places: Mapping[int, int]) -> int:
+        """The stop at the given places of the axes, by their number; the first place on every other axis."""
+        index = 0
+        for number, axis in enumerate(self.axes):
+            index = index * len(axis.values) + places.get(number, 0)
+        return index
 
     def _check_value(self, number: int, place: int) -> None:
         first: ScenarioError | None = None

@@ -74,7 +74,7 @@ def test_a_missing_scenario_is_named(slosh: Slosh) -> None:
 def test_a_packaged_scenario_that_may_be_meant_is_named(slosh: Slosh, command: str, given: str) -> None:
     outcome = slosh(command, given)
     assert outcome.code == ExitCode.BAD_INPUT
-    assert "`slosh init paper_80`" in outcome.err
+    assert "`slosh init paper-80-liquid` writes the packaged one to paper-80-liquid.yaml" in outcome.err
 
 
 def test_an_error_of_the_program_reaches_the_user_as_it_is(slosh: Slosh, solver: Solver) -> None:

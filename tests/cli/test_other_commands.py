@@ -14,10 +14,18 @@ from slosh_cli.scenario import Scenario, load_any_scenario, load_scenario, packa
 def test_init_writes_a_scenario_that_is_sound_and_commented(slosh: Slosh, tmp_path: Path) -> None:
     outcome = slosh("init")
     assert outcome.code == ExitCode.DONE
-    text = (tmp_path / "paper_80.yaml").read_text(encoding="utf-8")
+    text = (tmp_path / "tank-wagon.yaml").read_text(encoding="utf-8")
     assert "# " in text
-    assert text == PAPER.read_text(encoding="utf-8")
-    assert slosh("check", "paper_80.yaml").code == ExitCode.DONE
+    assert text == packaged_scenarios()["tank-wagon"].read_text(encoding="utf-8")
+    assert load_scenario("tank-wagon.yaml").tank.coefficients == "computed"
+    assert slosh("check", "tank-wagon.yaml").code == ExitCode.DONE
+
+
+def test_init_names_the_file_after_the_scenario(slosh: Slosh, tmp_path: Path) -> None:
+    assert slosh("init", "paper-80-liquid").code == ExitCode.DONE
+    assert (tmp_path / "paper-80-liquid.yaml").read_bytes() == PAPER.read_bytes()
+    assert slosh("init", "paper_160").code == ExitCode.DONE
+    assert load_scenario("paper-160-liquid.yaml").name == "paper-160-liquid"
 
 
 @pytest.mark.parametrize("name", packaged_scenarios())
@@ -27,16 +35,18 @@ def test_init_writes_any_packaged_scenario(slosh: Slosh, tmp_path: Path, name: s
     a_stop = isinstance(load_any_scenario("mine.yaml"), Scenario)
     assert ("slosh run mine.yaml" in outcome.out) is a_stop
     assert set(packaged_scenarios()) - set(re.findall(r"[\w-]+", outcome.out)) == {name}
-    assert (tmp_path / "mine.yaml").read_bytes() == packaged_scenarios()[name].read_bytes()
+    written = (tmp_path / "mine.yaml").read_text(encoding="utf-8")
+    assert written == packaged_scenarios()[name].read_text(encoding="utf-8").replace(f"name: {name}\n", "name: mine\n")
+    assert load_any_scenario("mine.yaml").name == "mine"
     assert slosh("check", "mine.yaml").code == ExitCode.DONE
 
 
 def test_init_never_overwrites(slosh: Slosh, tmp_path: Path) -> None:
-    (tmp_path / "paper_80.yaml").write_text("mine")
+    (tmp_path / "tank-wagon.yaml").write_text("mine")
     outcome = slosh("init")
     assert outcome.code == ExitCode.BAD_INPUT
     assert "exists already" in outcome.err
-    assert (tmp_path / "paper_80.yaml").read_text() == "mine"
+    assert (tmp_path / "tank-wagon.yaml").read_text() == "mine"
 
 
 def test_init_lists_the_packaged_scenarios(slosh: Slosh, tmp_path: Path) -> None:
@@ -83,7 +93,7 @@ def test_check_names_every_mistake_with_its_line(slosh: Slosh, tmp_path: Path) -
 
 
 def test_check_takes_changed_values(slosh: Slosh) -> None:
-    assert slosh("check", PAPER, "--set", "tank.fill=0.7").code == ExitCode.DONE
+    assert slosh("check", PAPER, "--set", "tank.fill=0.7", "--set", "tank.coefficients=computed").code == ExitCode.DONE
     assert slosh("check", PAPER, "--set", "tank.fill=1.7").code == ExitCode.BAD_INPUT
 
 
@@ -121,5 +131,6 @@ def test_plot_of_something_else_is_the_users_matter(slosh: Slosh, tmp_path: Path
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_packaged_default_is_the_papers_wagon() -> None:
-    assert load_scenario(packaged_scenarios()["paper-80-liquid"]).name == "paper-80-liquid"
+def test_the_name_of_a_new_scenario_can_name_a_folder(slosh: Slosh) -> None:
+    assert slosh("init", "-o", "my wagon (2).yaml").code == ExitCode.DONE
+    assert load_scenario("my wagon (2).yaml").name == "my-wagon-2"

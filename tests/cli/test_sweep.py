@@ -136,7 +136,8 @@ def test_fresh_starts_over(slosh: Slosh, quick: QuickSolver) -> None:
 def test_any_key_can_vary_several_at_once(slosh: Slosh, quick: QuickSolver, tmp_path: Path) -> None:
     outcome = slosh(
         "sweep", PAPER, "--v0", "80", "--torque", "5", "--vary", "tank.fill=0.3:0.5:0.1",
-        "--vary", "wagon.pivot_spacing=10:14:2 m", "--vary", "contact.adhesion=dry,wet", "-o", "here",
+        "--set", "tank.coefficients=computed", "--vary", "wagon.pivot_spacing=10:14:2 m",
+        "--vary", "contact.adhesion=dry,wet", "-o", "here",
     )  # fmt: skip
     assert outcome.code == ExitCode.DONE
     table = pd.read_csv(tmp_path / "here" / "braking_distance.csv")
@@ -154,7 +155,7 @@ def test_the_models_of_the_load_can_be_chosen(slosh: Slosh, quick: QuickSolver) 
 
 
 def test_a_study_file_is_run_like_a_scenario(slosh: Slosh, quick: QuickSolver, tmp_path: Path) -> None:
-    (tmp_path / "fills.yaml").write_text("base: paper-80-liquid\nvary:\n  tank.fill: 0.3:0.5:0.1\n")
+    (tmp_path / "fills.yaml").write_text("base: tank-wagon\nvary:\n  tank.fill: 0.3:0.5:0.1\n")
     answer = answer_of(slosh("sweep", "fills.yaml", "--json"))
     assert (answer["name"], answer["runs"]) == ("fills", 6)
     assert names(tmp_path / "outputs" / "fills") == FILES

@@ -83,7 +83,7 @@ def test_coefficients_are_transcribed_as_printed(name: str) -> None:
 
 def test_packaged_scenarios() -> None:
     speeds = {"paper-80-liquid": 80, "paper-80-solid": 80, "paper-160-liquid": 160, "paper-160-solid": 160}
-    assert list(packaged_scenarios()) == sorted([*speeds, "kolaei-half", "kolaei-three-quarters"])
+    assert list(packaged_scenarios()) == sorted([*speeds, "kolaei-half", "kolaei-three-quarters", "tank-wagon"])
     reference = load_scenario(find_packaged("paper-80-liquid"))
     for name, speed in speeds.items():
         found = load_scenario(find_packaged(name))
@@ -119,7 +119,8 @@ def test_written_out_it_reads_back_equal(name: str, write: Write) -> None:
 CHANGES = [
     ("tank={shape: rectangular, width: 2.4 m, height: 2 m, length: 9 m, fill: 0.3, bottom_height: 1.2 m, "
      "liquid: {model: modal, density: 1 t/m^3, damping_ratio: 0.01}, modes: 3}",),
-    ("tank.shape=polygon", "tank.points=[[-1, 0], [1, 0], [1.2, 1.5], [-1.2, 1.5]]", "tank.radius=1 m"),
+    ("tank.shape=polygon", "tank.coefficients=computed", "tank.points=[[-1, 0], [1, 0], [1.2, 1.5], [-1.2, 1.5]]",
+     "tank.radius=1 m"),
     ("contact.adhesion={mu0: 0.3, A: 0.1, B: 0.123456789 s/m, kA: 0.9, kS: 0.3}", "contact.stiffness=9e10 N/m^1.5"),
     ("solver.tolerance=1e-7", "output.interval=1.7 ms", "braking.initial_speed=123.4 km/h"),
     ("description='Umlaute: äöü # and \"quotes\"'",),
@@ -247,7 +248,8 @@ def test_a_tank_is_read_from_either_kind_of_file(paper: Scenario) -> None:
     found = load_tank_scenario(find_packaged("paper-80-liquid"))
     assert isinstance(found, TankScenario)
     assert (found.name, found.tank) == (paper.name, paper.tank)
-    assert load_tank_scenario(find_packaged("kolaei-half"), ["tank.fill=0.6"]).tank.fill == 0.6
+    changes = ["tank.fill=0.6", "tank.coefficients=computed"]
+    assert load_tank_scenario(find_packaged("kolaei-half"), changes).tank.fill == 0.6
     assert isinstance(load_any_scenario(find_packaged("kolaei-half")), TankScenario)
     assert isinstance(load_any_scenario(find_packaged("paper-80-liquid")), Scenario)
 
@@ -297,7 +299,7 @@ def test_replace_from_computed_to_given_coefficients_and_back(paper: Scenario) -
 
 def test_replace_of_a_tank_alone() -> None:
     tank = load_tank_scenario(find_packaged("kolaei-half"))
-    found = replace(tank, {"tank.radius": 1.0})
+    found = replace(tank, {"tank.radius": 1.0, "tank.coefficients": "computed"})
     assert (type(found), found.tank.width) == (TankScenario, 2.0)
 
 

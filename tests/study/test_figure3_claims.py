@@ -120,7 +120,7 @@ def test_another_model_of_the_liquid_is_judged_by_its_own_stops() -> None:
         (Wishes(liquids="rigid"), False),
         (Wishes(liquids="shallow-water,rigid"), True),
         (Wishes(vary=["tank.fill=0.4,0.5"], speeds="80,160"), False),
-        (Wishes(overrides=["tank.fill=0.6"]), False),
+        (Wishes(overrides=["tank.fill=0.6", "tank.coefficients=computed"]), False),
         (Wishes(overrides=["contact.adhesion=wet"]), False),
     ],
 )
