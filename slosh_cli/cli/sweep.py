@@ -80,7 +80,7 @@ ClusterAddress = Annotated[
     typer.Option(
         "--cluster",
         metavar="ADDRESS",
-        help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs slosh-cli[cluster]).",
+        help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs Dask).",
         show_default=False,
     ),
 ]

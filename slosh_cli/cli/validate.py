@@ -202,5 +202,7 @@ def _overview(results: "Sequence[CaseResult]") -> "Table":
 
 
 def _say_missing(missing: "Sequence[CaseData]") -> None:
+    from slosh_cli.version import install_command
+
     for data in missing:
-        note(f"{data.name} is left out: it needs {data.needs}, `pip install 'slosh-cli[validation]'`.")
+        note(f"{data.name} is left out: it needs {data.needs}, `{install_command('validation')}`.")

@@ -1,6 +1,6 @@
 """Stops on a Dask cluster that runs already: batches out, outcomes back as they come.
 
-Needs the extra `slosh-cli[cluster]` here and, in the same version, wherever a worker runs.
+Needs the extra `cluster` here, and the same version of slosh wherever a worker runs.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from slosh_cli.errors import SloshError, UsageError
 from slosh_cli.study.key import RESULT_VERSION
 from slosh_cli.study.outcome import Outcome, failed, solve
 from slosh_cli.study.plan import Stop
-from slosh_cli.version import __version__
+from slosh_cli.version import __version__, install_command
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -73,7 +73,7 @@ class Cluster:
         try:
             import distributed
         except ImportError:
-            text = "--cluster needs Dask: python -m pip install 'slosh-cli[cluster]', here and for the workers"
+            text = f"--cluster needs Dask: {install_command('cluster')}, here and for the workers"
             raise UsageError(text, "--cluster") from None
         self._dask: Any = distributed
         self.address = address
@@ -231,5 +231,5 @@ def _told(error: BaseException) -> SloshError:
         return error
     text = f"{type(error).__name__}: {error}"
     if isinstance(error, ImportError):
-        text += f"; the workers need slosh too: python -m pip install 'slosh-cli[cluster]=={__version__}'"
+        text += f"; the workers need slosh {__version__} and Dask, installed as on this machine"
     return ClusterError(f"a worker failed: {text}", "--cluster")

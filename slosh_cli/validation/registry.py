@@ -11,6 +11,7 @@ from typing import Final, cast
 from slosh_cli.errors import UsageError
 from slosh_cli.validation.case import CaseResult, Compute, run_case
 from slosh_cli.validation.data_file import CaseData, read_case
+from slosh_cli.version import install_command
 
 NAMES: Final = (
     "kolaei",
@@ -49,7 +50,7 @@ def chosen(names: Sequence[str]) -> list[CaseData]:
         return [data for data in cases if is_available(data)]
     for data in cases:
         if not is_available(data):
-            remedy = "install it with `pip install 'slosh-cli[validation]'`"
+            remedy = f"install it with `{install_command('validation')}`"
             raise UsageError(f"the case {data.name} needs {data.needs}, which is not installed; {remedy}", data.name)
     return cases
 

@@ -111,5 +111,5 @@ def test_a_case_whose_extra_is_missing_is_left_out_or_refused(monkeypatch):
     monkeypatch.setattr(registry, "find_spec", lambda name: None)
     assert [data.name for data in registry.left_out()] == ["second-code"]
     assert "second-code" not in [data.name for data in registry.chosen([])]
-    with pytest.raises(UsageError, match=r"needs exudyn, .*pip install 'slosh-cli\[validation\]'"):
+    with pytest.raises(UsageError, match=r"needs exudyn, .*pip install 'exudyn>="):
         registry.chosen(["second-code"])
