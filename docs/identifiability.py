@@ -96,7 +96,7 @@ Every row is one study. The row of 9 m pivot spacing is
 
 and the others have in place of that key what the column `changed` of `identifiability.csv` says. All of them, this
 page, its figure and that file are made by `python docs/identifiability.py`. Where a stop that a claim is about ends as
-`overturned`, there is no answer.
+`pitch-limit`, there is no answer.
 """
 COLUMNS = (
     "varied", "value", *CLAIMS.values(), "best torque 80 km/h (solid) / kN m", "best torque 160 km/h (solid) / kN m",

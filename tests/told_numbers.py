@@ -106,7 +106,7 @@ def figure_3_tables():
 
 def number(cell):
     """A distance; None where the stop has no answer."""
-    return None if cell == "overturned" else float(cell.removesuffix(" *"))
+    return None if cell == "pitch-limit" else float(cell.removesuffix(" *"))
 
 
 def best(speed, load):

@@ -131,6 +131,7 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
     from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study
+    from slosh_cli.results.result import Status
     from slosh_cli.study.runner import answer
     from slosh_cli.study.table import TABLE, columns, rows, write_study_table
 
@@ -147,7 +148,8 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
     figures = _draw(task, found())
     claims = claim_text(_verdicts(task, found()))
     failures = failure_lines(study, found())
-    failed = sum(row["status"] != "stopped" for row in found())
+    failed = sum(Status(row["status"]).is_failure for row in found())
+    unanswered = sum(row["status"] != Status.STOPPED for row in found())
     if task.as_json:
         _say_answer(task, written - failed, failed, planned.reused, table, figures)
         if claims:
@@ -158,8 +160,9 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
             say(claims)
         say("\n" + "\n".join([f"  table    {table}", *(f"  figure   {figure}" for figure in figures)]))
         say(f"{written} stops in {time.perf_counter() - task.began:.1f} s, {planned.reused} of them from the journal")
-    if failed:
-        complain(f"{failed} of {written} stops ended without an answer:\n" + "\n".join(failures))
+    if unanswered:
+        tell = complain if failed else note
+        tell(f"{unanswered} of {written} stops ended without an answer:\n" + "\n".join(failures))
     return ExitCode.NO_ANSWER if failed else ExitCode.DONE
 
 

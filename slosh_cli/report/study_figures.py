@@ -45,7 +45,7 @@ LOOKS: Final[Sequence[dict[str, Any]]] = (
 )
 OUTSIDE: Final = (0, (1, 1.8))
 """Line style of the way to and from a stop outside linear theory."""
-WITHOUT_ANSWER: Final = {Status.OVERTURNED: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
+WITHOUT_ANSWER: Final = {Status.PITCH_LIMIT: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
 
 
 @dataclass(frozen=True)

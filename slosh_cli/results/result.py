@@ -23,12 +23,22 @@ PerWheel = tuple[float, float, float, float]
 
 
 class Status(StrEnum):
-    """How a run ended. Only `STOPPED` is an answer."""
+    """How a run ended. Only `STOPPED` has a distance; `PITCH_LIMIT`, where small angles end, is a result of a study."""
 
     STOPPED = "stopped"
     TIME_LIMIT = "time-limit"
-    OVERTURNED = "overturned"
+    PITCH_LIMIT = "pitch-limit"
     FAILED = "failed"
+
+    @classmethod
+    def _missing_(cls, value: object) -> "Status | None":
+        """The status that files of earlier versions call by another name."""
+        return cls.PITCH_LIMIT if value == "overturned" else None
+
+    @property
+    def is_failure(self) -> bool:
+        """Whether a study has nothing to tell of such a run."""
+        return self in (Status.TIME_LIMIT, Status.FAILED)
 
     @property
     def remedy(self) -> str:
@@ -39,7 +49,7 @@ class Status(StrEnum):
 _REMEDIES = {
     Status.STOPPED: "",
     Status.TIME_LIMIT: "Raise solver.time_limit, or brake harder: brake and resistance may be too weak.",
-    Status.OVERTURNED: "A body pitched beyond what small angles can describe. Lower the torque, "
+    Status.PITCH_LIMIT: "A body pitched beyond what small angles can describe. Lower the torque, "
     "or compare with `--set tank.liquid.model=rigid`.",
     Status.FAILED: "Tighten solver.tolerance or refine track.domain.element_length, and look at the last "
     "moments in the history file.",

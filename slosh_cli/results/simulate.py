@@ -42,8 +42,8 @@ WHOLE = 1 / HALF
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
     advance.TIME_LIMIT: (Status.TIME_LIMIT, "still rolling at {speed:.2f} m/s at the time limit of {time:.4g} s"),
-    advance.OVERTURNED: (
-        Status.OVERTURNED,
+    advance.PITCH_LIMIT: (
+        Status.PITCH_LIMIT,
         "a pitch angle passed 0.1 rad {time:.2f} s into the run at {speed:.1f} m/s; small-angle kinematics end there",
     ),
     advance.UNSOLVED: (
@@ -131,7 +131,7 @@ def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
         head=max(float(run.state.push[DEEPEST] - stop.model.shallow.table.depth[-1]), 0.0),
         unloading=float(np.max(1 - least / stop.static_loads)),
         lifts=int(run.state.lifted[0]),
-        overturned=run.outcome == advance.OVERTURNED,
+        pitch_limit=run.outcome == advance.PITCH_LIMIT,
         residual=float(run.state.residual[2]),
     )
 

@@ -52,7 +52,7 @@ class Extent:
     head: float
     unloading: float
     lifts: int
-    overturned: bool
+    pitch_limit: bool
     residual: float
 
 
@@ -100,7 +100,7 @@ def _checks(x: Extent) -> Iterator[Check]:
     yield Check(
         "pitch beyond small angles",
         "model",
-        float(x.overturned),
+        float(x.pitch_limit),
         0.0,
         "A pitch angle passed 0.1 rad; small-angle kinematics say nothing beyond, and the run ended there.",
     )
@@ -123,5 +123,5 @@ def _checks(x: Extent) -> Iterator[Check]:
 
 
 def warnings_of(verdicts: Sequence[Check]) -> list[str]:
-    """What to tell about the verdicts that are not within their limits; overturning is told by the run's reason."""
+    """What to tell about the verdicts that are not within their limits; the pitch limit is told by the run's reason."""
     return [check.meaning for check in verdicts if not check.within and check.name != "pitch beyond small angles"]

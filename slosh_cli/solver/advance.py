@@ -46,7 +46,7 @@ from slosh_cli.wagon.brake import brake_torque, next_break
 from slosh_cli.wagon.coordinates import COORDINATES, WHEEL_SPIN, WHEELS
 
 # why the loop returns
-RUNNING, STOPPED, TIME_LIMIT, OVERTURNED, UNSOLVED, STALLED_EVENTS, ROWS_FULL, NOT_FINITE = range(8)
+RUNNING, STOPPED, TIME_LIMIT, PITCH_LIMIT, UNSOLVED, STALLED_EVENTS, ROWS_FULL, NOT_FINITE = range(8)
 
 SHORTEST_STEP = 1e-9
 """Steps do not go below this, s."""
@@ -179,7 +179,7 @@ def _apply_events(state, before, after):
         elif k == STOP_EVENT:
             outcome = STOPPED
         elif k == PITCH_EVENT:
-            outcome = OVERTURNED
+            outcome = PITCH_LIMIT
     return switched, outcome
 
 

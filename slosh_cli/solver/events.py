@@ -1,4 +1,4 @@
-"""Events that end a step: lock, release, creepage floor, stop, overturning.
+"""Events that end a step: lock, release, creepage floor, stop, pitch limit.
 
 Each event has a value that is positive until it happens. A value is *armed* once it has been clearly positive; a
 wheel just released has exactly zero speed and so cannot relock before it has turned (model section 11). Lift-off and

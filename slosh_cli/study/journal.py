@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from slosh_cli.results.files import FileError
+from slosh_cli.results.result import Status
 from slosh_cli.study.outcome import Outcome
 from slosh_cli.version import __version__
 
@@ -115,7 +116,7 @@ class Journal:
         """The row of a stop: column to value; None where it has not been run."""
         with self._trouble("read"):
             found = self._file.execute("SELECT answer FROM stop WHERE key = ?", (key,)).fetchone()
-            return dict(json.loads(found[0])) if found else None
+            return _answer(found[0]) if found else None
 
     def mean_seconds(self) -> float | None:
         """What a stop has taken on average, in s of one thread; None before the first."""
@@ -153,6 +154,12 @@ class Journal:
             elif verb == "write":
                 text += "; every stop committed before is kept. Make room, then start the same command again"
             raise FileError(text, str(self.path)) from error
+
+
+def _answer(text: str) -> dict[str, Any]:
+    """A row as it was committed, its status by the name it has today."""
+    answer = dict(json.loads(text))
+    return answer | {"status": str(Status(answer["status"]))}
 
 
 def remove(path: Path) -> None:

@@ -44,10 +44,10 @@ def test_time_limit_ends_a_run_where_it_stands(stop):
     assert cut.channels["position"][-1] == pytest.approx(whole.channels["position"][row], rel=1e-5)
 
 
-def test_overturned_run_ends_at_a_tenth_of_a_radian(stop):
+def test_run_at_the_pitch_limit_ends_at_a_tenth_of_a_radian(stop):
     """Model section 9: small-angle kinematics say nothing beyond."""
     result = stop("paper_160", "braking.torque=20 kN m")
-    assert result.status == "overturned"
+    assert result.status == "pitch-limit"
     assert result.braking_distance_m is None
     assert "0.1 rad" in result.reason
     pitches = np.array([result.channels[name] for name in ("car_pitch", "bogie_1_pitch", "bogie_2_pitch")])

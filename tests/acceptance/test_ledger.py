@@ -88,7 +88,7 @@ def test_ledger_closes_at_tight_tolerance_in_every_other_stop(stop, case):
 def test_ledger_closes_with_wheels_lifting_and_the_run_says_so(stop, case):
     """Acceptance: to 1e-3, and a warning; the largest wheel load of an undamped contact does not converge then."""
     result = stop(*case)
-    assert result.status in ("stopped", "overturned")
+    assert result.status in ("stopped", "pitch-limit")
     assert min(result.min_wheel_load_N) == 0.0
     assert result.max_wheel_unloading == 1.0
     assert result.energy_residual < 1e-3

@@ -28,7 +28,7 @@ from .plain_wagon import FIRST_MODE, THETA_BOGIE, THETA_CAR, S
 GAMMA = 1.0 - np.sqrt(0.5)
 STOPPED = 4  # index of the event that ends the run; smaller ones are wheels
 SHORTEST = 1e-9  # s; an event nearer than this happens now
-OVERTURNED = 0.1  # rad
+PITCH_LIMIT = 0.1  # rad
 TIME_LIMIT = 600.0  # s
 
 
@@ -157,7 +157,7 @@ class _Record:
     def add(self, state: State) -> None:
         motion = state.motion
         pitch = motion.q[[THETA_CAR, *THETA_BOGIE]]
-        if not np.all(np.isfinite(motion.u)) or np.max(np.abs(pitch)) > OVERTURNED:
+        if not np.all(np.isfinite(motion.u)) or np.max(np.abs(pitch)) > PITCH_LIMIT:
             raise ArithmeticError(f"run left the range of the model at {state.t:.3f} s")
         self.rows.append(
             (
@@ -191,7 +191,7 @@ def _initial(system: System, speed: float) -> State:
 def stop(scenario, step: float = 5e-4, element_length: float | None = None) -> PlainStop:
     """Brake a wagon from its initial speed to its stop speed with steps of ``step`` seconds.
 
-    Raises ArithmeticError when a stage is not solved, the wagon overturns or it does not stop in time.
+    Raises ArithmeticError when a stage is not solved, the wagon reaches the pitch limit or it does not stop in time.
     """
     system, braking = system_of(scenario, element_length), scenario.braking
     state = _initial(system, braking.initial_speed)

@@ -138,8 +138,8 @@ def test_every_mode_is_drawn(liquid: Result) -> None:
 
 
 def test_a_run_that_did_not_stop_says_so(liquid: Result) -> None:
-    run = replace(liquid, status=Status.OVERTURNED, reason="car pitch 0.1 rad at 3 s", warnings=())
-    assert caption(run) == "The run ended as overturned: car pitch 0.1 rad at 3 s"
+    run = replace(liquid, status=Status.PITCH_LIMIT, reason="car pitch 0.1 rad at 3 s", warnings=())
+    assert caption(run) == "The run ended as pitch-limit: car pitch 0.1 rad at 3 s"
 
 
 def test_a_long_name_is_cut(liquid: Result) -> None:

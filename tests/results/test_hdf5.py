@@ -16,7 +16,7 @@ from slosh_cli.results import hdf5
 from slosh_cli.results.channels import channel
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_history, write_history
-from slosh_cli.results.result import Result
+from slosh_cli.results.result import Result, Status
 
 
 @pytest.fixture
@@ -45,6 +45,13 @@ def test_a_run_without_an_answer_is_read_back_as_such(unfinished: Result, tmp_pa
     assert history.braking_distance_m is None
     assert history.status == "time-limit"
     assert history.reason == unfinished.reason
+
+
+def test_a_history_of_an_earlier_version_is_read_with_the_names_of_today(result: Result, tmp_path: Path) -> None:
+    write_history(result, tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5", "r+") as plain:
+        plain.attrs["status"] = "overturned"
+    assert read_history(tmp_path / "run.h5").status is Status.PITCH_LIMIT
 
 
 def test_several_warnings_stay_several(result: Result, tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ def test_an_unknown_status_is_refused(result: Result) -> None:
 
 
 def test_a_status_given_as_text_becomes_one(result: Result) -> None:
-    assert replace(result, status="overturned").status is Status.OVERTURNED  # type: ignore[arg-type]
+    assert replace(result, status="pitch-limit").status is Status.PITCH_LIMIT  # type: ignore[arg-type]
 
 
 def test_every_status_but_stopped_tells_the_remedy() -> None:

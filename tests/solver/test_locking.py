@@ -140,7 +140,7 @@ def test_locked_wagon_slides_like_a_block(stop):
 def test_wheels_that_lift_and_land_hard_do_not_end_the_run(stop, torque):
     """A torque far beyond adhesion throws the bogies about; wheels land at metres a second and the run goes on."""
     result = stop("paper_80_solid", f"braking.torque={torque} kN m")
-    assert result.status in ("stopped", "overturned"), result.reason
+    assert result.status in ("stopped", "pitch-limit"), result.reason
     assert min(result.min_wheel_load_N) == 0.0
     assert result.energy_residual < 1e-3
 

@@ -12,7 +12,7 @@ TORQUES = [2.5 * k for k in range(1, 13)]
 
 
 def row(speed: float, torque: float, liquid: str, distance: float | None, *, within: bool = True) -> dict[str, Any]:
-    status = "overturned" if distance is None else "stopped"
+    status = "pitch-limit" if distance is None else "stopped"
     return {
         "v0_km_h": speed, "torque_kN_m": torque, "liquid": liquid, "braking_distance_m": distance, "status": status,
         "liquid_in_range": within,
@@ -87,7 +87,7 @@ def test_about_15_percent_is_10_to_20(ratio: float, finding: Finding) -> None:
 def test_a_stop_without_an_answer_leaves_the_claim_open_and_is_named() -> None:
     found = by_claim(without(figure(), 160.0, 20.0, "modal"))
     assert found["fig3-15-percent"].finding is Finding.OPEN
-    assert "liquid: overturned" in found["fig3-15-percent"].evidence
+    assert "liquid: pitch-limit" in found["fig3-15-percent"].evidence
     assert "160 km/h modal: 17.5 kN m" in found["fig3-optimum"].evidence
     assert "without an answer at 20 kN m" in found["fig3-optimum"].evidence
     assert "longer at 23 of 23 points" in found["fig3-longer"].evidence

@@ -31,7 +31,7 @@ def path(tmp_path: Path) -> Path:
 def test_what_was_added_is_there_when_the_journal_is_opened_again(path: Path) -> None:
     with Journal(path) as journal:
         journal.begin_session("abc")
-        journal.add([outcome("a"), outcome("b", status="overturned", reason="too fast", distance=float("nan"))])
+        journal.add([outcome("a"), outcome("b", status="pitch-limit", reason="too fast", distance=float("nan"))])
     with Journal(path) as journal:
         assert len(journal) == 2
         assert "a" in journal
@@ -39,6 +39,14 @@ def test_what_was_added_is_there_when_the_journal_is_opened_again(path: Path) ->
         assert journal.answer("a") == {"status": "stopped", "braking_distance_m": 0.1 + 0.2}
         assert journal.answer("c") is None
         assert journal.mean_seconds() == 0.25
+
+
+def test_a_journal_of_an_earlier_version_is_read_with_the_names_of_today(path: Path) -> None:
+    with Journal(path) as journal:
+        journal.add([outcome("a", status="overturned", reason="a pitch angle passed 0.1 rad")])
+        assert journal.answer("a") == {
+            "status": "pitch-limit", "reason": "a pitch angle passed 0.1 rad", "braking_distance_m": 0.1 + 0.2,
+        }  # fmt: skip
 
 
 def test_the_journal_flushes_every_commit_to_the_disk(path: Path) -> None:

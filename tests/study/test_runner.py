@@ -85,7 +85,7 @@ def test_a_failed_stop_is_a_row_with_its_reason_and_the_others_go_on(solver: Qui
         if scenario.braking.torque == 10e3:
             raise PhysicsError("The wagon finds no equilibrium.", "wagon")
         if scenario.braking.torque == 15e3:
-            return replace(solver.stop(scenario), status=Status.OVERTURNED, reason="a pitch angle passed 0.1 rad",
+            return replace(solver.stop(scenario), status=Status.PITCH_LIMIT, reason="a pitch angle passed 0.1 rad",
                            braking_distance_m=None, braking_time_s=None)  # fmt: skip
         if scenario.braking.torque == 20e3:
             raise ZeroDivisionError("division by zero")
@@ -95,7 +95,7 @@ def test_a_failed_stop_is_a_row_with_its_reason_and_the_others_go_on(solver: Qui
     study = build(replace(STUDY, liquids="rigid"))
     assert carry_out(study, tmp_path) == (0, 8)
     found = table(study, tmp_path)
-    assert [row["status"] for row in found[:4]] == ["stopped", "failed", "overturned", "failed"]
+    assert [row["status"] for row in found[:4]] == ["stopped", "failed", "pitch-limit", "failed"]
     assert found[1]["reason"] == "The wagon finds no equilibrium."
     assert found[2]["reason"] == "a pitch angle passed 0.1 rad"
     assert found[3]["reason"] == "the program failed: ZeroDivisionError: division by zero"

@@ -18,14 +18,14 @@ from slosh_cli.report.study_figures import OUTSIDE, Mark, Page, Panel, braking_d
 from slosh_cli.results.result import Status
 from slosh_cli.study.build import Wishes, build
 
-STOPPED, OVERTURNED = Status.STOPPED, Status.OVERTURNED
+STOPPED, PITCH_LIMIT = Status.STOPPED, Status.PITCH_LIMIT
 
 
 def page(**changes: Any) -> Page:
     """Two panels: a liquid with a gap, out of linear theory from the third stop on; a solid."""
     liquid = [
         Mark(2.5, 430.0, STOPPED, True), Mark(5.0, 218.0, STOPPED, True), Mark(7.5, 155.0, STOPPED, False),
-        Mark(10.0, None, OVERTURNED, False), Mark(12.5, 101.0, STOPPED, False), Mark(15.0, 103.0, STOPPED, False),
+        Mark(10.0, None, PITCH_LIMIT, False), Mark(12.5, 101.0, STOPPED, False), Mark(15.0, 103.0, STOPPED, False),
     ]  # fmt: skip
     solid = [Mark(2.5 * k, 440.0 / k, STOPPED, True) for k in range(1, 7)]
     panels = [Panel("80 km/h", {"modal": liquid, "rigid": solid}), Panel("160 km/h", {"modal": liquid, "rigid": solid})]
@@ -105,14 +105,14 @@ def test_the_legend_names_what_occurs_and_nothing_else() -> None:
         return [text.get_text() for text in braking_distance(shown).legends[0].get_texts()]
 
     assert legend(page()) == [
-        "liquid (modal)", "equivalent solid", "outside linear theory", "overturned", "most effective torque",
+        "liquid (modal)", "equivalent solid", "outside linear theory", "pitch-limit", "most effective torque",
     ]  # fmt: skip
     fine = Panel("", {"rigid": [Mark(1.0, 5.0, STOPPED, True), Mark(2.0, 4.0, STOPPED, True)]})
     assert legend(page(panels=[fine])) == ["equivalent solid", "most effective torque"]
 
 
 def test_a_panel_without_any_answer_says_so() -> None:
-    nothing = Panel("80 km/h", {"modal": [Mark(1.0, None, OVERTURNED, False), Mark(2.0, None, OVERTURNED, False)]})
+    nothing = Panel("80 km/h", {"modal": [Mark(1.0, None, PITCH_LIMIT, False), Mark(2.0, None, PITCH_LIMIT, False)]})
     (axes,) = braking_distance(page(panels=[nothing])).axes
     assert [text.get_text() for text in axes.texts] == ["no stop has an answer"]
     assert len(lines(axes, BLUE, "x")) == 2
@@ -135,7 +135,7 @@ def test_files_are_fit_for_print(tmp_path: Path) -> None:
     assert width / 300 > 6.5  # inches at 300 dots each: the width of a printed page
     assert 1.2 < width / height < 2.2
     text = " ".join("".join(node.itertext()) for node in ElementTree.parse(svg).iter() if node.tag.endswith("text"))
-    for words in ("braking distance / m", "torque / kN m", "80 km/h", "160 km/h", "overturned"):
+    for words in ("braking distance / m", "torque / kN m", "80 km/h", "160 km/h", "pitch-limit"):
         assert words in text
 
 

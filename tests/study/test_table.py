@@ -63,7 +63,7 @@ def test_a_stop_that_has_not_run_has_no_row_and_without_a_solid_there_is_no_rati
 def test_without_both_distances_there_is_no_ratio(failing: str) -> None:
     def answer(index: int) -> dict[str, Any]:
         row = answers(STUDY, index)
-        return row | ({"braking_distance_m": None, "status": "overturned"} if row["liquid"] == failing else {})
+        return row | ({"braking_distance_m": None, "status": "pitch-limit"} if row["liquid"] == failing else {})
 
     assert all(row["ratio_to_solid"] is None for row in rows(STUDY, answer))
 
