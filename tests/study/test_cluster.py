@@ -151,7 +151,7 @@ def test_an_address_where_nobody_answers_is_a_clear_error(tmp_path: Path, monkey
 
 def test_without_dask_the_user_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(UsageError, match="pip install .distributed"):
+    with pytest.raises(UsageError, match=r"pip install .distributed"):
         Cluster("tcp://127.0.0.1:8786")
 
 
