@@ -115,7 +115,9 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
         raise ValueRefused("must be a range `start:stop:step`", given, "write all three, such as `2.5:30:2.5`")
     numbers, units = zip(*(_number_and_unit(part) for part in parts), strict=True)
     if {written for written in units if written} - {unit}:
-        raise ValueRefused("must have one unit in a range", given, "write the unit once, at the end: `10:14:1 m`")
+        raise ValueRefused(
+            "must have one unit in a range", given, "write the unit once, at the end, such as `10:14:1 m`"
+        )
     start, stop, step = numbers
     if step == 0 or (stop - start) * step < 0:
         rule = "must have a step that leads from start to stop"
@@ -124,9 +126,9 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
         raise ValueRefused(f"must have at most {MOST_VALUES} values", given, "widen the step")
     count = round((stop - start) / step)
     if abs((stop - start) / step - count) > Decimal("1e-9") * max(count, 1):
-        last = _decimal(start + count * step)
+        last = f"{_decimal(start + count * step)}:{_decimal(step)}{unit and f' {unit}'}"
         rule = "must reach its stop in whole steps, because both ends are in"
-        raise ValueRefused(rule, given, f"write `{_decimal(start)}:{last}:{_decimal(step)}` or another step")
+        raise ValueRefused(rule, given, f"write `{_decimal(start)}:{last}` or another step")
     texts = [_decimal(start + k * step) for k in range(count)] + [_decimal(stop)]
     return [f"{text} {unit}" if unit else text for text in texts]
 
