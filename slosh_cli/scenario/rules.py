@@ -124,7 +124,7 @@ def _elements(v: Values) -> Iterator[Finding]:
         most = 0.5 * v["wagon.bogie.wheelbase"]
         rule = f"must be at most half the wheelbase, {at_most(most)} m"
         yield _finding(key, rule, _metres(v[key]), f"write `{at_most(most)} m` or less")
-    if v.has(key, "track.domain.length") and v["track.domain.length"] / v[key] > MOST_ELEMENTS:
+    if v.has(key, "track.domain.length") and v[key] < v["track.domain.length"] / MOST_ELEMENTS:
         rule = f"must give at most {MOST_ELEMENTS} elements over {shown(v['track.domain.length'])} m"
         least = v["track.domain.length"] / MOST_ELEMENTS
         yield _finding(key, rule, _metres(v[key]), f"write `{at_least(least)} m` or more")
@@ -156,7 +156,7 @@ def _braking(v: Values) -> Iterator[Finding]:
 
 def _rows(v: Values) -> Iterator[Finding]:
     interval, limit = "output.interval", "solver.time_limit"
-    if v.has(interval, limit) and v[limit] / v[interval] > MOST_ROWS:
+    if v.has(interval, limit) and v[interval] < v[limit] / MOST_ROWS:
         rule = f"must give at most {MOST_ROWS} rows up to the time limit of {shown(v[limit])} s"
         fix = f"write `{at_least(v[limit] / MOST_ROWS)} s` or more, or a lower `solver.time_limit`"
         yield _finding(interval, rule, f"`{shown(v[interval])} s`", fix)

@@ -24,6 +24,8 @@ __all__ = [
     "parse_quantity", "percentage", "plain", "shown",
 ]  # fmt: skip
 
+_COMMON = re.compile(rf"\s*({NUMBER_PATTERN})\s*([A-Za-z].*?)\s*")
+"""Nearly every quantity, read without a detour."""
 _LONGEST: Final = 200
 """Characters; nothing longer is a quantity."""
 _UNCLEAR: Final = {("angular_frequency", "1/min"): ("rpm", "rad/min")}
@@ -104,6 +106,9 @@ def parse_quantity(
     to write.
     """
     kind = DIMENSIONS[dimension]
+    common = _COMMON.fullmatch(text) if isinstance(text, str) and len(text) <= _LONGEST else None
+    if common and common[2] in kind.factors and math.isfinite(float(common[1])):
+        return float(common[1]) * kind.factors[common[2]]
     wanted = _Wanted(kind, fits, example or f"1 {kind.units[0]}")
     if not isinstance(text, str):
         raise _bare(text, wanted)

@@ -9,7 +9,8 @@ from decimal import Decimal
 from typing import Any, Final
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.units import NUMBER_PATTERN
+from slosh_cli.scenario.unit_names import UnknownUnit, standard_unit
+from slosh_cli.scenario.units import NUMBER_PATTERN, percentage
 
 MOST_VALUES: Final = 100_000
 """Values of one axis; more are a slip in the step."""
@@ -32,13 +33,13 @@ class Axis:
 
     @property
     def unit(self) -> str:
-        """The unit that all values share; empty for pure numbers, words and mixtures."""
-        units = {measure[1] if measure else "" for measure in map(measured, self.values)}
+        """The unit that all values share, in standard form; empty for pure numbers, words and mixtures."""
+        units = {measure[1] if measure else "" for measure in map(_told, self.values)}
         return units.pop() if len(units) == 1 else ""
 
     def plain(self, position: int) -> float | str:
         """The value at `position` as a number in `unit`, or as text where the axis has no number there."""
-        measure = measured(self.values[position])
+        measure = _told(self.values[position])
         if measure is None or measure[1] != self.unit:
             return self.values[position]
         return measure[0]
@@ -48,6 +49,17 @@ def measured(text: str) -> tuple[float, str] | None:
     """Number and unit of a text such as ``10 km/h``, None where it is something else."""
     match = _MEASURE.fullmatch(text.strip())
     return (float(match[1]), match[2].strip()) if match else None
+
+
+def _told(text: str) -> tuple[float, str] | None:
+    """Number and unit of a value as a table tells it: ``kg·m⁻³`` as ``kg/m^3``, ``60 %`` as 0.6."""
+    share, measure = percentage(text), measured(text)
+    if share is not None or measure is None:
+        return None if share is None else (share, "")
+    try:
+        return measure[0], standard_unit(measure[1]) if measure[1] else ""
+    except UnknownUnit:
+        return measure
 
 
 def values_of(spec: str, bare_unit: str = "") -> tuple[str, ...]:
