@@ -114,7 +114,7 @@ def _data_path(location: tuple[str | int, ...]) -> Path:
 
 def _wrong_shape_of_tank(path: Path, given: Any) -> Finding:
     if not isinstance(given, dict):
-        fix = "write `shape: horizontal-cylinder` and the tank's other keys under it, each on its own line"
+        fix = "write the tank's keys under it, each on its own line, such as `shape: horizontal-cylinder`"
         return Finding(path, "must be a mapping", plain(given), fix)
     if "shape" not in given:
         listed = one_of([f"shape: {shape}" for shape in SHAPES])

@@ -138,9 +138,11 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
         raise ValueRefused(f"must have at most {MOST_VALUES} values", given, "widen the step")
     count = round((stop - start) / step)
     if abs((stop - start) / step - count) > Decimal("1e-9") * max(count, 1):
-        last = f"{_decimal(start + count * step)}:{_decimal(step)}{unit and f' {unit}'}"
+        last = f"{_decimal(start + int((stop - start) / step) * step)}:{_decimal(step)}{unit and f' {unit}'}"
         rule = "must reach its stop in whole steps, because both ends are in"
-        raise ValueRefused(rule, given, f"write `{_decimal(start)}:{last}` or another step")
+        raise ValueRefused(
+            rule, given, f"write a stop within reach, such as `{_decimal(start)}:{last}`, or another step"
+        )
     texts = [_decimal(start + k * step) for k in range(count)] + [_decimal(stop)]
     return [f"{text} {unit}" if unit else text for text in texts]
 

@@ -358,7 +358,7 @@ SHAPES_AND_TYPES = (
         "tank as a word",
         BASE[BASE.index("tank:"):BASE.index("track:")],
         "tank: cylinder\n",
-        (20, "tank", "must be a mapping", "`cylinder`", "write `shape: horizontal-cylinder`"),
+        (20, "tank", "must be a mapping", "`cylinder`", "such as `shape: horizontal-cylinder`"),
     ),
     one(
         "missing quantity", "    wheel_radius: 0.46 m\n", "",

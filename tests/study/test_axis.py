@@ -81,7 +81,7 @@ def test_a_range_that_misses_its_stop_names_one_that_does_not() -> None:
 
 def test_such_a_range_keeps_its_unit() -> None:
     with pytest.raises(ValueRefused) as caught:
-        values_of("10:24:10 m/s", "km/h")
+        values_of("10:28:10 m/s", "km/h")
     assert values_of(caught.value.fix.split("`")[1], "km/h") == ("10 m/s", "20 m/s")
 
 
