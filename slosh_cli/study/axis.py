@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.unit_names import UnknownUnit, standard_unit
-from slosh_cli.scenario.units import NUMBER_PATTERN, percentage
+from slosh_cli.scenario.units import NUMBER_PATTERN, numeral_of, percentage
 
 MOST_VALUES: Final = 100_000
 """Values of one axis; more are a slip in the step."""
@@ -52,14 +52,16 @@ def measured(text: str) -> tuple[float, str] | None:
 
 
 def _told(text: str) -> tuple[float, str] | None:
-    """Number and unit of a value as a table tells it: ``kg·m⁻³`` as ``kg/m^3``, ``60 %`` as 0.6."""
-    share, measure = percentage(text), measured(text)
-    if share is not None or measure is None:
-        return None if share is None else (share, "")
+    """Number and unit of a value as a table tells it: ``21 300 kg·m⁻³`` as 21300 ``kg/m^3``, ``60 %`` as 0.6."""
+    share, numeral = percentage(text), numeral_of(text)
+    if share is not None:
+        return share, ""
+    if numeral is None or len(numeral.readings) > 1:
+        return None
     try:
-        return measure[0], standard_unit(measure[1]) if measure[1] else ""
+        return float(numeral.readings[0]), standard_unit(numeral.rest) if numeral.rest else ""
     except UnknownUnit:
-        return measure
+        return measured(text)
 
 
 def values_of(spec: str, bare_unit: str = "") -> tuple[str, ...]:

@@ -118,3 +118,5 @@ def test_a_table_tells_percentages_as_numbers_and_units_in_one_form() -> None:
     assert [mixed.plain(place) for place in range(2)] == [0.2, 0.4]
     density = Axis("tank.liquid.density", ("830 kg·m⁻³", "900 kg/m3"), "")
     assert (density.unit, density.plain(1)) == ("kg/m^3", 900.0)
+    mass = Axis("wagon.car_body.mass", ("21 300 kg", "22.3e3 kg"), "")
+    assert (mass.unit, mass.plain(0)) == ("kg", 21300.0)
