@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.scenario.unit_names import DEFINITIONS, standard_unit
+from slosh_cli.scenario.unit_names import DEFINITIONS, UnknownUnit, standard_unit
 
 if TYPE_CHECKING:
     import pint
@@ -105,11 +105,14 @@ def _registry() -> pint.UnitRegistry[Any]:
 
 @lru_cache(maxsize=512)
 def _measure(standard: str) -> tuple[float, Any]:
-    """Factor to SI and dimensionality of a unit in standard form."""
+    """Factor to SI and dimensionality of a unit in standard form; UnknownUnit where no float holds the factor."""
     registry = _registry()
     quantity = registry.parse_expression(standard.replace("^", "**").replace(" ", " * "))
-    base = registry.Quantity(1, quantity.units).to_base_units()
-    return float(base.magnitude), base.dimensionality
+    try:
+        base = registry.Quantity(1, quantity.units).to_base_units()
+        return float(base.magnitude), base.dimensionality
+    except ArithmeticError:
+        raise UnknownUnit(standard) from None
 
 
 def convert(value: float, unit: str, dimension: str) -> float:

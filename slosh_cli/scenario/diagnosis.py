@@ -32,6 +32,7 @@ from slosh_cli.scenario.rules import Finding, Values, broken_rules, values_of
 from slosh_cli.scenario.schema import Root
 from slosh_cli.scenario.schema_run import Adhesion
 from slosh_cli.scenario.schema_tank import SHAPES, Coefficient, Coefficients, TankBase
+from slosh_cli.scenario.split_numbers import rejoined
 from slosh_cli.scenario.units import plain
 
 R = TypeVar("R", bound=Root)
@@ -47,6 +48,7 @@ def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[F
     guessed = _with_guessed_shape(data)
     if guessed is not None:
         findings += diagnose(model, guessed)[1]
+    findings = rejoined(findings, lambda path: _value_at(data, path), lambda path: _leaf_at(model, data, path))
     findings += broken_rules(_valid_values(model, data), model.rules)
     return None, tuple(dict.fromkeys(_as_written(model, data, finding) for finding in _without_echoes(findings)))
 
@@ -228,6 +230,12 @@ def _places_of(model: type[Part], name: str, prefix: Path = ()) -> Iterator[Path
         part = part_of(field) or (TankBase if key == "tank" else None)
         if part is not None:
             yield from _places_of(part, name, (*prefix, key))
+
+
+def _leaf_at(model: type[Part], data: Any, path: Path) -> Leaf | None:
+    """The leaf of the field at `path`, None where there is none."""
+    part = part_at(model, data, path[:-1])
+    return leaf_of(part.model_fields[str(path[-1])]) if part and path[-1] in part.model_fields else None
 
 
 @cache

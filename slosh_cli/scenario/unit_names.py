@@ -148,6 +148,8 @@ _SECONDS: Final = ("mm", "cm", "m", "s", "ft", "in")
 _GLUED = re.compile(f"({'|'.join(_FIRSTS)})({'|'.join(_SECONDS)})")
 _PAIRS: Final = tuple(first + second for first in _FIRSTS for second in _SECONDS)
 """Two symbols that people write as one word; no such word is a unit with a prefix, as `mN` or `mt` would be."""
+_MOST_NAMES: Final = 6
+"""In a unit whose case is put right; one with more is no slip of case."""
 _WORD = re.compile(r"[A-Za-z]+")
 _POWER: Final = r"(?:\^|\*\*)(?P<power>-?[1-9](?:\.[0-9])?)(?![0-9])|(?P<digit>[1-9](?:\.[0-9])?)(?![0-9])"
 _FACTOR = re.compile(rf"(?P<name>[A-Za-z]+(?:_[A-Za-z]+)*)(?:{_POWER}|(?P<minus>-[1-9])(?![0-9]))?")
@@ -256,6 +258,8 @@ def recased(unit: str) -> Iterator[str]:
     Single letters stay, and so do the first letters of short names where both cases are prefixes (``mN``, ``MN``).
     """
     names = _WORD.findall(unit)
+    if len(names) > _MOST_NAMES:
+        return
     choices = [[name] if name in NAMES or _GLUED.fullmatch(name) else list(_other_case(name)) for name in names]
     gaps = _WORD.split(unit)
     for chosen in itertools.product(*choices):

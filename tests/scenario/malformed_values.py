@@ -163,6 +163,27 @@ UNITS = (
         ),
     ),
     one(
+        "decimal comma in braces", "{mass: 21.3 t,", "{mass: 21,3 t,",
+        (
+            5, "wagon.car_body.mass", "must be one value, but a comma in braces ends it", "`21,3 t`",
+            "write `21.3 t`",
+        ),
+    ),
+    one(
+        "comma of thousands in braces", "{mass: 21.3 t,", "{mass: 21,300 kg,",
+        (
+            5, "wagon.car_body.mass", "must be one value, but a comma in braces ends it", "`21,300 kg`",
+            "write `21300 kg` if that is meant",
+        ),
+    ),
+    one(
+        "decimal comma of a pure number in braces", "{tolerance: 1.0e-4,", "{tolerance: 0,0001,",
+        (
+            49, "solver.tolerance", "must be one value, but a comma in braces ends it", "`0,0001`",
+            "write `0.0001`",
+        ),
+    ),
+    one(
         "two units for one quantity", "12 m", "12 m 30 cm",
         (
             15, "wagon.pivot_spacing", "must be a length with its unit", "`m 30 cm` cannot be read",

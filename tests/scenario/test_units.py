@@ -1,9 +1,13 @@
 """Quantities: what is accepted, what it is worth in SI, what is refused."""
 
+import itertools
 import math
 import pickle
+import random
 import subprocess
 import sys
+import time
+from contextlib import suppress
 from dataclasses import replace
 
 import pytest
@@ -206,6 +210,20 @@ def test_the_table_agrees_with_pint_to_the_last_bit(dimension: str, unit: str, m
     tabled = parse_quantity(f"0.7 {unit}", dimension)
     monkeypatch.setitem(DIMENSIONS, dimension, replace(DIMENSIONS[dimension], factors={}))
     assert parse_quantity(f"0.7 {unit}", dimension) == tabled
+
+
+ALPHABET = "kKmMgGNsthlbPa%°µ 0123456789.,'^-*/()·⁻³¹×xe\u202f\u2212"
+
+
+def test_whatever_is_written_is_read_or_refused_at_once() -> None:
+    chance = random.Random(10)
+    texts = ["".join(chance.choices(ALPHABET, k=chance.randrange(1, 20))) for _ in range(3000)]
+    texts += ["5 " + "KN " * 60, "5 " + "km^9 " * 30, "5 " + "mm^9.9 " * 20, "1" + " " * 150 + "x", "5 " + "(m)" * 60]
+    started = time.perf_counter()
+    for text, dimension in zip(texts, itertools.cycle(DIMENSIONS), strict=False):
+        with suppress(ValueRefused):
+            assert math.isfinite(parse_quantity(f"5{text}" if chance.random() < 0.5 else text, dimension))
+    assert time.perf_counter() - started < 10.0
 
 
 def test_the_packaged_scenarios_are_read_without_pint() -> None:
