@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, ClassVar
 
 from pydantic import GetJsonSchemaHandler, model_validator
@@ -46,7 +47,7 @@ class Aliased(Part):
     ) -> dict[str, Any]:
         schema = handler.resolve_ref_schema(handler(core))
         for alias in cls.aliases:
-            described = {"description": alias.description, "title": alias.key.capitalize()}
+            described = {"description": alias.description, "title": alias.key.replace("_", " ").title()}
             schema["properties"][alias.key] = alias.leaf(cls).json_schema() | described
             schema["required"].remove(alias.field)
             schema["oneOf"] = [{"required": [alias.field]}, {"required": [alias.key]}]
@@ -58,15 +59,21 @@ def aliases_of(model: type[Part] | None) -> tuple[Alias, ...]:
     return model.aliases if model is not None and issubclass(model, Aliased) else ()
 
 
-def keys_of(model: type[Part]) -> list[str]:
+@cache
+def keys_of(model: type[Part]) -> tuple[str, ...]:
     """Every key that a part may have, a second key after its field."""
     second = {alias.field: alias.key for alias in aliases_of(model)}
-    return [key for field in model.model_fields for key in (field, second.get(field)) if key is not None]
+    return tuple(key for field in model.model_fields for key in (field, second.get(field)) if key is not None)
 
 
 def field_of(model: type[Part] | None, key: str) -> str:
     """The field that a key of a part stands for: itself, or what it is the alias of."""
     return next((alias.field for alias in aliases_of(model) if alias.key == key), key)
+
+
+def is_written(model: type[Part] | None, key: str, data: Mapping[str, Any]) -> bool:
+    """Whether the field that a key stands for is given, by whichever of its keys."""
+    return key in data or any(other in data for one, other in rivals(model) if one == key)
 
 
 def with_fields(model: type[Part], data: Mapping[str, Any]) -> dict[str, Any]:

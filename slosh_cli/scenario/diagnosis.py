@@ -12,7 +12,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.alias import aliases_of, field_of, keys_of, with_fields
+from slosh_cli.scenario.alias import aliases_of, field_of, is_written, keys_of, with_fields
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import (
     FROM_TEXT,
@@ -142,7 +142,7 @@ def _listed(names: Any) -> str:
 def _unknown_key(model: type[Root], data: Mapping[str, Any], path: Path) -> Finding:
     """A key that is not in the schema, with a guess: another place for it, a similar key, another shape."""
     part, name = part_at(model, data, path[:-1]), str(path[-1])
-    fields = keys_of(part) if part else []
+    fields = keys_of(part) if part else ()
     both = next((alias for alias in aliases_of(part) if alias.key == name), None)
     if both is not None:
         return Finding(path, f"must not be given beside `{both.field}`", "both", "keep one of them")
@@ -153,8 +153,7 @@ def _unknown_key(model: type[Root], data: Mapping[str, Any], path: Path) -> Find
         rule = f"is not a key of a tank of shape {_shape_of(part)}"
         given += f", which belongs to shape {' or '.join(owners)}" if owners else ""
     parent = _value_at(data, path[:-1])
-    written = with_fields(part, parent) if part is not None and isinstance(parent, dict) else {}
-    absent = {key.lower(): key for key in fields if field_of(part, key) not in written}
+    absent = {key.lower(): key for key in fields if not isinstance(parent, dict) or not is_written(part, key, parent)}
     near = _similar(name, absent)
     places = sorted(_places_of(model, name), key=lambda place: place[: len(path) - 1] != path[:-1])
     elsewhere = [place for place in places if _value_at(data, place) is None]

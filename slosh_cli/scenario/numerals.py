@@ -61,7 +61,7 @@ def read_number(text: str) -> Numeral | None:
     match = _NUMBER.match(text)
     if match is None:
         return None
-    rest, sign = text[match.end() :].strip(), match["sign"]
+    sign, rest = match["sign"], re.sub(r"^\*(?!\*)\s*", "", text[match.end() :].strip())  # 0.2·g is 0.2 g
     if match["ten"]:
         return Numeral((f"{sign}1e{int(match['alone'])}",), rest)
     power = match["exponent"] or match["power"]

@@ -198,7 +198,7 @@ class _Reader:
         self.place = 0
 
     def factors(self) -> list[tuple[str, float]]:
-        """Names and powers in the order they are written; the same name in one place counts once."""
+        """Names and powers in the order they are written."""
         start = self.text.startswith("/")
         self.place = int(start)
         found = list(self._product(-1.0 if start else 1.0))

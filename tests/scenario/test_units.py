@@ -112,6 +112,8 @@ ACCEPTED = [
     ("90 °/s", "angular_frequency", math.pi / 2),
     ("6 rev/min", "angular_frequency", math.pi / 5),
     ("5 µm", "length", 5e-6),
+    ("0.2·g", "acceleration", 1.962),
+    ("2.1·10¹¹·N/m²", "modulus", 2.1e11),
     ("0.4 kN·s²/m²", "quadratic_resistance", 400.0),
     ("1 kg/(m s^2) m^2", "force", 1.0),
 ]
