@@ -224,9 +224,12 @@ class Number(Leaf):
         share = percentage(value) if isinstance(value, str) else None
         number = _finite_number(value, rule, self.example, self.limits.__contains__) if share is None else share
         if number not in self.limits:
-            given = f"`{_beyond(number, self.limits)}`"
-            given = given if share is None else f"{plain(value)} = {_beyond(number, self.limits)}"
-            raise ValueRefused(rule, given, f"write a number within the range, such as `{self.example}`")
+            beyond = _beyond(number, self.limits)
+            given = f"`{beyond}`" if share is None else f"{plain(value)} = {beyond}"
+            fix = f"write a number within the range, such as `{self.example}`"
+            if share is None and number / 100 in self.limits:
+                fix += ", or is it meant in `%`?"
+            raise ValueRefused(rule, given, fix)
         return number
 
     def json_schema(self) -> dict[str, Any]:

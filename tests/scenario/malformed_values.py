@@ -231,7 +231,7 @@ RANGES = (
     ),
     one(
         "fill in per cent", "fill: 0.5", "fill: 50",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`50`", "such as `0.5`"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`50`", "such as `0.5`, or is it meant in `%`?"),
     ),
     one(
         "tolerance of zero", "1.0e-4", "0",
