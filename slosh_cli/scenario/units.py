@@ -107,8 +107,9 @@ def parse_quantity(
     """
     kind = DIMENSIONS[dimension]
     common = _COMMON.fullmatch(text) if isinstance(text, str) and len(text) <= _LONGEST else None
-    if common and common[2] in kind.factors and math.isfinite(float(common[1])):
-        return float(common[1]) * kind.factors[common[2]]
+    value = float(common[1]) * kind.factors.get(common[2], math.nan) if common else math.nan
+    if math.isfinite(value):
+        return value
     wanted = _Wanted(kind, fits, example or f"1 {kind.units[0]}")
     if not isinstance(text, str):
         raise _bare(text, wanted)
@@ -116,8 +117,6 @@ def parse_quantity(
     if numeral is None:
         raise ValueRefused(wanted.rule, plain(text), wanted.finite)
     numbers, unit = numeral
-    if not all(math.isfinite(float(number)) for number in numbers):
-        raise ValueRefused(wanted.rule, f"{plain(text)}, which overflows", wanted.finite)
     if not unit:
         raise ValueRefused(wanted.rule, f"{plain(text)} without a unit", wanted.offer(numbers, kind.units))
     try:
@@ -126,6 +125,8 @@ def parse_quantity(
     except ValueError as error:
         given, fix = _unit_advice(numbers, unit, error, wanted)
         raise ValueRefused(wanted.rule, f"{plain(text.strip())}{given}", fix) from None
+    if not math.isfinite(value):
+        raise ValueRefused(wanted.rule, f"{plain(text)}, which overflows", wanted.finite)
     if unclear:
         about = f"{plain(text)}, which are turns to some people and radians to others"
         raise ValueRefused(wanted.rule, about, wanted.offer(numbers, unclear))
