@@ -31,7 +31,7 @@ ONE_HOME = {
     "yaml": "scenario/loader.py",
     "h5py": "results/hdf5.py",
     "matplotlib": "report/",
-    "pint": "scenario/units.py",
+    "pint": "scenario/conversion.py",
     "sqlite3": "study/journal.py",
     "distributed": "study/cluster.py",
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any, TypeVar
 
@@ -11,6 +12,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.alias import aliases_of, field_of, is_written, keys_of, with_fields
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import (
     FROM_TEXT,
@@ -30,6 +32,7 @@ from slosh_cli.scenario.rules import Finding, Values, broken_rules, values_of
 from slosh_cli.scenario.schema import Root
 from slosh_cli.scenario.schema_run import Adhesion
 from slosh_cli.scenario.schema_tank import SHAPES, Coefficient, Coefficients, TankBase
+from slosh_cli.scenario.split_numbers import rejoined
 from slosh_cli.scenario.units import plain
 
 R = TypeVar("R", bound=Root)
@@ -45,8 +48,19 @@ def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[F
     guessed = _with_guessed_shape(data)
     if guessed is not None:
         findings += diagnose(model, guessed)[1]
+    findings = rejoined(findings, lambda path: _value_at(data, path), lambda path: _leaf_at(model, data, path))
     findings += broken_rules(_valid_values(model, data), model.rules)
-    return None, tuple(dict.fromkeys(_without_echoes(findings)))
+    return None, tuple(dict.fromkeys(_as_written(model, data, finding) for finding in _without_echoes(findings)))
+
+
+def _as_written(model: type[Root], data: Mapping[str, Any], finding: Finding) -> Finding:
+    """A finding about a field at the key that the field was written under."""
+    above = finding.path[:-1]
+    given = _value_at(data, above)
+    for alias in aliases_of(part_at(model, data, above)) if isinstance(given, dict) else ():
+        if finding.path[-1] == alias.field and alias.field not in given and alias.key in given:
+            return replace(finding, path=(*above, alias.key))
+    return finding
 
 
 def _with_guessed_shape(data: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -56,7 +70,7 @@ def _with_guessed_shape(data: Mapping[str, Any]) -> dict[str, Any] | None:
         return None
     shape = guess(tank.get("shape", ""), tuple(SHAPES)).strip("`")
     if not shape:
-        telling = {"radius": "horizontal-cylinder", "points": "polygon"}
+        telling = {"radius": "horizontal-cylinder", "diameter": "horizontal-cylinder", "points": "polygon"}
         shape = next((telling[key] for key in telling if key in tank), "")
     return {**data, "tank": {**tank, "shape": shape}} if shape else None
 
@@ -102,7 +116,7 @@ def _data_path(location: tuple[str | int, ...]) -> Path:
 
 def _wrong_shape_of_tank(path: Path, given: Any) -> Finding:
     if not isinstance(given, dict):
-        fix = "write `shape: horizontal-cylinder` and the tank's other keys under it, each on its own line"
+        fix = "write the tank's keys under it, each on its own line, such as `shape: horizontal-cylinder`"
         return Finding(path, "must be a mapping", plain(given), fix)
     if "shape" not in given:
         listed = one_of([f"shape: {shape}" for shape in SHAPES])
@@ -111,10 +125,10 @@ def _wrong_shape_of_tank(path: Path, given: Any) -> Finding:
     return Finding((*path, "shape"), refused.rule, refused.given, refused.fix)
 
 
-def _not_a_mapping(path: Path, given: Any, part: type[BaseModel] | None) -> Finding:
+def _not_a_mapping(path: Path, given: Any, part: type[Part] | None) -> Finding:
     if part is None:
         return Finding(path, "must have another form", plain(given), "see `slosh schema` for the form")
-    keys = _listed(part.model_fields)
+    keys = _listed(keys_of(part))
     return Finding(
         path, f"must be a mapping with the keys {keys}", plain(given), f"write these keys under `{path[-1]}:`"
     )
@@ -128,28 +142,37 @@ def _listed(names: Any) -> str:
 def _unknown_key(model: type[Root], data: Mapping[str, Any], path: Path) -> Finding:
     """A key that is not in the schema, with a guess: another place for it, a similar key, another shape."""
     part, name = part_at(model, data, path[:-1]), str(path[-1])
-    fields = list(part.model_fields) if part else []
+    fields = keys_of(part) if part else ()
+    both = next((alias for alias in aliases_of(part) if alias.key == name), None)
+    if both is not None:
+        return Finding(path, f"must not be given beside `{both.field}`", "both", "keep one of them")
     rule = f"is not a key of `{dotted(path[:-1])}`" if len(path) > 1 else "is not a key of a scenario"
-    owners = [shape for shape, tank in SHAPES.items() if name in tank.model_fields]
+    owners = [shape for shape, tank in SHAPES.items() if name in keys_of(tank)]
     given, fix = f"`{name}`", f"take it out; the keys here are {_listed(fields)}"
     if part is not None and part in SHAPES.values():
         rule = f"is not a key of a tank of shape {_shape_of(part)}"
         given += f", which belongs to shape {' or '.join(owners)}" if owners else ""
     parent = _value_at(data, path[:-1])
-    absent = {field.lower(): field for field in fields if not isinstance(parent, dict) or field not in parent}
+    absent = {key.lower(): key for key in fields if not isinstance(parent, dict) or not is_written(part, key, parent)}
     near = _similar(name, absent)
     places = sorted(_places_of(model, name), key=lambda place: place[: len(path) - 1] != path[:-1])
     elsewhere = [place for place in places if _value_at(data, place) is None]
     if elsewhere:
-        return Finding(path, rule, given, f"move it to `{dotted(elsewhere[0])}`", elsewhere[0])
+        return Finding(path, rule, given, f"move it to `{dotted(elsewhere[0])}`", _field(model, data, elsewhere[0]))
     if near:
-        return Finding(path, rule, given, f"write `{absent[near[0]]}`", (*path[:-1], absent[near[0]]))
+        guessed = (*path[:-1], absent[near[0]])
+        return Finding(path, rule, given, f"write `{absent[near[0]]}`", _field(model, data, guessed))
     taken = _similar(name, fields)
     if taken:
         fix = f"write `{taken[0]}`, which is there already, or take it out"
     elif places:
         fix = f"take it out, or did you mean `{dotted(places[0])}`?"
     return Finding(path, rule, given, fix)
+
+
+def _field(model: type[Root], data: Mapping[str, Any], path: Path) -> Path:
+    """The path of the field that a key stands for."""
+    return (*path[:-1], field_of(part_at(model, data, path[:-1]), str(path[-1])))
 
 
 def _similar(name: str, keys: Iterable[str]) -> list[str]:
@@ -200,12 +223,18 @@ def part_at(model: type[Part], data: Any, path: Path) -> type[Part] | None:
 
 def _places_of(model: type[Part], name: str, prefix: Path = ()) -> Iterator[Path]:
     """Paths at which the schema knows `name`, single values only, dimensions of the tank left out."""
+    if prefix and name in keys_of(model) and (name not in model.model_fields or not part_of(model.model_fields[name])):
+        yield (*prefix, name)
     for key, field in model.model_fields.items():
         part = part_of(field) or (TankBase if key == "tank" else None)
         if part is not None:
             yield from _places_of(part, name, (*prefix, key))
-        elif key == name and prefix:
-            yield (*prefix, key)
+
+
+def _leaf_at(model: type[Part], data: Any, path: Path) -> Leaf | None:
+    """The leaf of the field at `path`, None where there is none."""
+    part = part_at(model, data, path[:-1])
+    return leaf_of(part.model_fields[str(path[-1])]) if part and path[-1] in part.model_fields else None
 
 
 @cache
@@ -219,16 +248,19 @@ def leaf_of(field: FieldInfo) -> Leaf | None:
     return next((entry for entry in field.metadata if isinstance(entry, Leaf)), None)
 
 
-def _how_to_write(name: str, parent: type[BaseModel] | None) -> str:
+def _how_to_write(name: str, parent: type[Part] | None) -> str:
     if parent is None or name not in parent.model_fields:
         return f"write `{name}: ...`"
     field = parent.model_fields[name]
     leaf, part = leaf_of(field), part_of(field)
+    second = next((f" or `{alias.key}: {alias.example}`" for alias in aliases_of(parent) if alias.field == name), "")
+    if isinstance(leaf, Version):
+        return f"write `{name}: {leaf.supported}`"
     if leaf is not None:
-        return f"write `{name}: {_example(leaf)}`"
+        return f"write it, such as `{name}: {_example(leaf)}`{second}"
     if name == "adhesion":
-        return "write `adhesion: dry` or `adhesion: wet`"
-    keys = _listed(part.model_fields) if part else "shape, its dimensions, length, fill, bottom_height and liquid"
+        return "write `adhesion: dry`, `adhesion: wet` or a coefficient of friction, such as `adhesion: 0.15`"
+    keys = _listed(keys_of(part)) if part else "shape, its dimensions, length, fill, bottom_height and liquid"
     return f"write `{name}:` with the keys {keys} under it"
 
 
@@ -252,6 +284,7 @@ def _valid_values(model: type[Part], data: Any, prefix: str = "") -> Values:
     """What is valid in data that as a whole is not; keys with an invalid value are left out."""
     values: dict[str, Any] = {}
     explicit: set[str] = set()
+    data = with_fields(model, data)
     for name, field in model.model_fields.items():
         key = prefix + name
         if name in data:

@@ -77,6 +77,13 @@ class Document:
             del self.origins[known]
         self.origins[place] = Origin(override=override)
 
+    def remove(self, path: Path) -> None:
+        """Take the key at `path` out of its mapping, if it is there."""
+        mapping = self._at(path[:-1])
+        if path[-1] in mapping:
+            del mapping[path[-1]]
+            self.origins.pop(path, None)
+
     def normal(self, path: Path) -> Path:
         """`path` with the indices into lists as integers."""
         return tuple(int(step) if isinstance(self._at(path[:depth]), list) else step for depth, step in enumerate(path))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -19,9 +20,25 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.units import DIMENSIONS, NUMBER_PATTERN, convert, parse_quantity, plain, shown
+from slosh_cli.scenario.units import (
+    DIMENSIONS,
+    at_least,
+    at_most,
+    convert,
+    numeral_of,
+    offered,
+    parse_quantity,
+    percentage,
+    plain,
+    shown,
+)
 
 FROM_TEXT: Final[dict[str, bool]] = {"units_required": True}
+QUANTITY_PATTERN: Final = (
+    r"^\s*(?![+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*$)[+\-\u2212]?\.?[0-9].*[A-Za-z\u00b0\u00b5\u03bc].*$"
+)
+"""Of a text in a JSON schema: a number first and a letter somewhere behind it, but no bare number."""
+PERCENT_PATTERN: Final = r"^\s*[+\-\u2212]?\.?[0-9].*(?:%|\u2030|per ?cent|pct|per ?mille)\s*$"
 
 
 class SIValue(float):
@@ -86,8 +103,8 @@ class Range:
     def words(self, unit: str = "") -> str:
         """``from 100 kg to 2e4 kg``, in the given unit."""
         tail = f" {unit}" if unit else ""
-        start = f"above {shown(self.low)}{tail}" if self.above else f"from {shown(self.low)}{tail}"
-        end = f"below {shown(self.high)}{tail}" if self.below else f"to {shown(self.high)}{tail}"
+        start = f"above {at_least(self.low)}{tail}" if self.above else f"from {at_least(self.low)}{tail}"
+        end = f"below {at_most(self.high)}{tail}" if self.below else f"to {at_most(self.high)}{tail}"
         return f"{start} {'and' if self.above or self.below else ''} {end}".replace("  ", " ")
 
 
@@ -108,74 +125,118 @@ class Quantity(Leaf):
     def parse(self, value: object) -> float:
         if isinstance(value, SIValue):
             number = float(value)
+        elif isinstance(value, Multiple):
+            return value.share(value.leaf.parse(value.value))
         else:
-            number = parse_quantity(value, self.dimension, self.limits.__contains__)
+            number = parse_quantity(value, self.dimension, self._accepts, self.example)
         if number == 0.0 and self.nonzero:
             raise ValueRefused("must not be zero", plain(value), f"write a value such as `{self.example}`")
         if number in self.limits:
             return number
         noun = DIMENSIONS[self.dimension].noun
-        given = plain(value) if isinstance(value, str) else f"`{shown(number)} {self.unit}`"
+        given = plain(value) if isinstance(value, str) else f"`{_beyond(number, self.limits)} {self.unit}`"
         if isinstance(value, str) and f"{shown(number)} {self.unit}" != value.strip():
-            given += f" = {shown(number)} {self.unit}"
+            given += f" = {_beyond(number, self.limits)} {self.unit}"
         raise ValueRefused(f"must be {noun} {self.limits.words(self.unit)}", given, self._range_fix(value))
 
     def parse_python(self, value: object) -> float:
+        if isinstance(value, Multiple):
+            return value.share(value.leaf.parse_python(value.value))
         bare = isinstance(value, int | float) and not isinstance(value, bool)
         return self.parse(SIValue(value) if bare else value)  # type: ignore[arg-type]
 
+    def _accepts(self, number: float) -> bool:
+        return number in self.limits and not (self.nonzero and number == 0.0)
+
     def _range_fix(self, value: object) -> str:
-        """If the same number fits in another unit, that is what was probably meant."""
-        number = re.match(NUMBER_PATTERN, value.strip()) if isinstance(value, str) else None
-        if number:
+        """An example; and the unit that was probably meant, if the same number fits in it."""
+        fix = f"write a value within the range, such as `{self.example}`"
+        numeral = numeral_of(value) if isinstance(value, str) else None
+        if numeral is not None and len(numeral.readings) == 1:
             for unit in DIMENSIONS[self.dimension].units:
-                if convert(float(number.group()), unit, self.dimension) in self.limits:
-                    return f"write `{number.group()} {unit}` if that is meant, or a value within the range"
-        return f"write a value within the range, such as `{self.example}`"
+                if self._accepts(convert(float(numeral.readings[0]), unit, self.dimension)):
+                    return f"{fix}, or is its unit meant to be `{unit}`?"
+        return fix
 
     def json_schema(self) -> dict[str, Any]:
         kind = DIMENSIONS[self.dimension]
         return {
             "type": "string",
-            "pattern": rf"^\s*{NUMBER_PATTERN}\s*[A-Za-z(1].*$",
+            "pattern": QUANTITY_PATTERN,
             "examples": [self.example],
             "x-unit": kind.unit,
             "x-range": self.limits.words(kind.unit),
         }
 
 
-def _finite_number(value: object, rule: str, example: str) -> float:
+@dataclass(frozen=True)
+class Multiple:
+    """A value that was written under another key, `times` as large as the field's: a diameter for a radius."""
+
+    value: object
+    leaf: Quantity
+    times: float
+
+    def share(self, number: float) -> float:
+        """What the field holds."""
+        return number / self.times
+
+
+def _beyond(number: float, limits: Range) -> str:
+    """A number outside its limits, with as many digits as it takes to see that."""
+    return shown(number) if float(shown(number)) not in limits else repr(number)
+
+
+def _finite_number(value: object, rule: str, example: str, fits: Callable[[float], bool]) -> float:
     """A plain number as float; ValueRefused for text, truth values, containers, nan and infinity."""
-    if isinstance(value, str) and re.fullmatch(NUMBER_PATTERN, value.strip()):
-        raise ValueRefused(rule, f"the text `'{value}'`", f"write it without quotes: `{value.strip()}`")
-    if isinstance(value, str) and re.match(NUMBER_PATTERN, value.strip()):
-        raise ValueRefused(rule, plain(value), f"write the number alone, it has no unit: `{example}`")
+    if isinstance(value, str):
+        raise ValueRefused(rule, *_text_for_number(value, example, fits))
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueRefused(rule, plain(value), f"write a number, such as `{example}`")
-    if not math.isfinite(value):
+    if not abs(value) <= sys.float_info.max:
         raise ValueRefused(rule, plain(value), f"write a finite number, such as `{example}`")
     return float(value)
 
 
+def _text_for_number(value: str, example: str, fits: Callable[[float], bool]) -> tuple[str, str]:
+    """(given, fix) where text stands in place of a pure number."""
+    numeral = numeral_of(value)
+    if numeral is None:
+        return plain(value), f"write a number, such as `{example}`"
+    if numeral.rest:
+        return plain(value), f"write a number without a unit, such as `{example}`"
+    fix = offered([number for number in numeral.readings if fits(float(number))])
+    if numeral.readings[0] == value.strip():
+        fix = fix.replace("write", "write it without quotes:", 1)
+    quoted = f"'{value}'"
+    return f"the text {plain(quoted)}", fix or f"write a number, such as `{example}`"
+
+
 @dataclass(frozen=True)
 class Number(Leaf):
-    """A dimensionless number within `limits`."""
+    """A dimensionless number within `limits`; in a file a percentage such as ``60 %`` is one too."""
 
     limits: Range
     example: str
 
     def parse(self, value: object) -> float:
         rule = f"must be a number {self.limits.words()}"
-        number = _finite_number(value, rule, self.example)
+        share = percentage(value) if isinstance(value, str) else None
+        number = _finite_number(value, rule, self.example, self.limits.__contains__) if share is None else share
         if number not in self.limits:
+            beyond = _beyond(number, self.limits)
+            given = f"`{beyond}`" if share is None else f"{plain(value)} = {beyond}"
             fix = f"write a number within the range, such as `{self.example}`"
-            raise ValueRefused(rule, f"`{shown(number)}`", fix)
+            if share is None and number / 100 in self.limits:
+                fix += ", or is it meant in `%`?"
+            raise ValueRefused(rule, given, fix)
         return number
 
     def json_schema(self) -> dict[str, Any]:
         low = "exclusiveMinimum" if self.limits.above else "minimum"
         high = "exclusiveMaximum" if self.limits.below else "maximum"
-        return {"type": "number", low: self.limits.low, high: self.limits.high}
+        number = {"type": "number", low: self.limits.low, high: self.limits.high}
+        return {"anyOf": [number, {"type": "string", "pattern": PERCENT_PATTERN}]}
 
 
 @dataclass(frozen=True)
@@ -187,10 +248,13 @@ class Count(Leaf):
 
     def parse(self, value: object) -> int:
         rule = f"must be a whole number from {self.low} to {self.high}"
-        number = _finite_number(value, rule, str(self.low))
-        if number != round(number) or not self.low <= number <= self.high:
+        number = _finite_number(value, rule, str(self.low), self._accepts)
+        if not self._accepts(number):
             raise ValueRefused(rule, plain(value), f"write a whole number within the range, such as `{self.low}`")
         return round(number)
+
+    def _accepts(self, number: float) -> bool:
+        return math.isfinite(number) and number == round(number) and self.low <= number <= self.high
 
     def json_schema(self) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}

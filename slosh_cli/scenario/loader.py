@@ -13,8 +13,9 @@ import yaml
 from pydantic import ValidationError
 
 from slosh_cli.errors import Problem, ScenarioError
+from slosh_cli.scenario.alias import rivals
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.diagnosis import diagnose
+from slosh_cli.scenario.diagnosis import diagnose, part_at
 from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.given_modes import tank_of_file, with_own_coefficients
 from slosh_cli.scenario.leaves import FROM_TEXT
@@ -199,6 +200,7 @@ def _overridden(scenario: Root, parts: Collection[str], overrides: Mapping[str, 
             _override(document, key, value, key)
         else:
             document.overrides.append(key)
+            _drop_rival(document, tuple(key.split(".")))
             document.replace(tuple(key.split(".")), si_values(value), key)
     return document
 
@@ -261,7 +263,19 @@ def _override(document: Document, key: str, text: str, place: str) -> None:
         return
     document.problems += inner.problems
     unfold_adhesion(document.data, path)
+    _drop_rival(document, path)
     document.replace(path, value, place)
+
+
+def _drop_rival(document: Document, path: Place) -> None:
+    """Where an override gives the diameter of a file that gives the radius, or the other way round, leave one.
+
+    Both stay where both come from overrides; that is refused like both in a file.
+    """
+    for key, other in rivals(part_at(Scenario, document.data, path[:-1])):
+        rival = (*path[:-1], other)
+        if path[-1] == key and not document.origin(rival).override:
+            document.remove(rival)
 
 
 def _parse(text: str, file: str) -> Document:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
+
+from pydantic_core import PydanticCustomError
 
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.diagnosis import leaves_of
 from slosh_cli.scenario.leaves import Quantity, SIValue
-from slosh_cli.scenario.schema_run import ADHESIONS
+from slosh_cli.scenario.schema_run import named_adhesion
 
 
 def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:
@@ -55,10 +58,10 @@ def si_values(value: Any) -> Any:
 
 
 def unfold_adhesion(data: dict[str, Any], path: tuple[str, ...]) -> None:
-    """Write `dry` or `wet` out as a mapping where an override is about to change one of its values."""
+    """Write `dry`, `wet` or a number out as a mapping where an override is about to change one of its values."""
     contact = data.get("contact")
     if path[:2] != ("contact", "adhesion") or len(path) < 3 or not isinstance(contact, dict):
         return
-    named = contact.get("adhesion")
-    if isinstance(named, str) and named in ADHESIONS:
-        contact["adhesion"] = plain_data(ADHESIONS[named], as_text=True)
+    with suppress(PydanticCustomError):
+        named = named_adhesion(contact.get("adhesion"))
+        contact["adhesion"] = plain_data(named, as_text=True) if isinstance(named, Part) else named

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.leaves import Leaf
-from slosh_cli.scenario.units import NUMBER_PATTERN, parse_quantity, plain, shown
+from slosh_cli.scenario.leaves import QUANTITY_PATTERN, Leaf
+from slosh_cli.scenario.units import parse_quantity, plain, shown
 
 Points = tuple[tuple[float, float], ...]
 
@@ -30,7 +30,9 @@ class Outline(Leaf):
 
     def parse(self, value: object) -> Points:
         if not isinstance(value, list | tuple):
-            raise ValueRefused("must be a list of corners [y, z] in m", plain(value), f"write `points: {EXAMPLE}`")
+            raise ValueRefused(
+                "must be a list of corners [y, z] in m", plain(value), f"write corners, such as `points: {EXAMPLE}`"
+            )
         if len(value) > _MOST:
             raise ValueRefused(f"must have at most {_MOST} corners", f"{len(value)}", "leave out corners")
         points = [self._corner(index, corner) for index, corner in enumerate(value)]
@@ -49,7 +51,7 @@ class Outline(Leaf):
         number = {
             "oneOf": [
                 {"type": "number"},
-                {"type": "string", "pattern": rf"^\s*{NUMBER_PATTERN}\s*[A-Za-z].*$"},
+                {"type": "string", "pattern": QUANTITY_PATTERN},
             ]
         }
         corner = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
@@ -66,7 +68,7 @@ class Outline(Leaf):
         rule = f"must have coordinates in m within {shown(self.largest)} m, but corner {index + 1} has not"
         if isinstance(number, str):
             try:
-                number = parse_quantity(number, "length")
+                number = parse_quantity(number, "length", lambda value: abs(value) <= self.largest, "1.2 m")
             except ValueRefused as refused:
                 raise ValueRefused(rule, refused.given, refused.fix) from None
         if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= self.largest:
@@ -76,7 +78,9 @@ class Outline(Leaf):
 
 def _check_corners(points: list[tuple[float, float]], tolerance: float) -> None:
     if len(points) < 3:
-        raise ValueRefused("must have at least three corners", f"{len(points)}", f"write `points: {EXAMPLE}`")
+        raise ValueRefused(
+            "must have at least three corners", f"{len(points)}", f"write more, such as `points: {EXAMPLE}`"
+        )
     for index, (here, there) in enumerate(zip(points, [*points[1:], points[0]], strict=True)):
         if math.dist(here, there) <= tolerance:
             place = f"corners {index + 1} and {(index + 1) % len(points) + 1} at {_at(here)}"
@@ -99,7 +103,8 @@ def _check_simple(points: list[tuple[float, float]]) -> None:
 def _check_place(points: list[tuple[float, float]], tolerance: float) -> None:
     lowest = min(z for _, z in points)
     if abs(lowest) > tolerance:
-        fix = f"add {shown(-lowest)} to every z" if lowest < 0 else f"take {shown(lowest)} off every z"
+        exact = f"{abs(lowest):.12g}"
+        fix = f"add {exact} to every z" if lowest < 0 else f"take {exact} off every z"
         raise ValueRefused("must have its lowest point at z = 0", f"a lowest z of {shown(lowest)} m", fix)
 
 
@@ -111,7 +116,7 @@ def _check_symmetric(points: list[tuple[float, float]], tolerance: float) -> Non
     for y, z in corners:
         partner = min(range(count), key=lambda i: math.dist(corners[i], (-y, z)))
         if math.dist(corners[partner], (-y, z)) > 4.0 * tolerance:
-            fix = f"write a corner {_at((-y, z))} too, or move the outline"
+            fix = f"write a corner [{-y:.12g}, {z:.12g}] too, or move the outline"
             raise ValueRefused("must be symmetric about y = 0", f"corner {_at((y, z))} without its mirror image", fix)
         mirrored.append(partner)
     for i in range(count):

@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any, Final
 
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.units import STANDARD_GRAVITY, shown
+from slosh_cli.scenario.units import STANDARD_GRAVITY, at_least, at_most, shown
 
 DOMAIN_MARGIN: Final = 5.0
 """Least length of rail ahead of the first and behind the last wheel, m."""
@@ -25,6 +25,8 @@ LONGEST_TANK: Final = 3.0
 """Of the pivot spacing."""
 WIDEST_SLOT: Final = 0.2
 """Of the tank's mean width: the slot above the roof of a shallow-water liquid."""
+USUAL_SLOT_SPEED: Final = 30.0
+"""The default of the slot's speed, m/s."""
 MOST_ELEMENTS: Final = 20_000
 MOST_ROWS: Final = 2_000_000
 
@@ -93,7 +95,7 @@ def _wheels_apart(v: Values) -> Iterator[Finding]:
         return
     wheelbase, diameter = v["wagon.bogie.wheelbase"], 2.0 * v["wagon.wheelset.wheel_radius"]
     if wheelbase <= diameter:
-        rule = f"must be longer than the wheels are high, {shown(diameter)} m, or the wheels of a bogie touch"
+        rule = f"must be longer than the wheels are high, {at_least(diameter)} m, or the wheels of a bogie touch"
         yield _finding("wagon.bogie.wheelbase", rule, _metres(wheelbase), "write a longer wheelbase or smaller wheels")
 
 
@@ -102,7 +104,7 @@ def _bogies_apart(v: Values) -> Iterator[Finding]:
         return
     wheelbase, spacing = v["wagon.bogie.wheelbase"], v["wagon.pivot_spacing"]
     if spacing <= wheelbase:
-        rule = f"must be longer than the wheelbase of a bogie, {shown(wheelbase)} m"
+        rule = f"must be longer than the wheelbase of a bogie, {at_least(wheelbase)} m"
         yield _finding("wagon.pivot_spacing", rule, _metres(spacing), "write a longer pivot spacing")
 
 
@@ -113,32 +115,33 @@ def _domain_holds_wagon(v: Values) -> Iterator[Finding]:
     needed, length = wheels + 2.0 * DOMAIN_MARGIN, v["track.domain.length"]
     if length < needed:
         rule = f"must hold the wheels, {shown(wheels)} m apart, and {shown(DOMAIN_MARGIN)} m more at either end"
-        yield _finding("track.domain.length", rule, _metres(length), f"write at least `{shown(needed)} m`")
+        yield _finding("track.domain.length", rule, _metres(length), f"write at least `{at_least(needed)} m`")
 
 
 def _elements(v: Values) -> Iterator[Finding]:
     key = "track.domain.element_length"
     if v.has(key, "wagon.bogie.wheelbase") and v[key] > 0.5 * v["wagon.bogie.wheelbase"]:
         most = 0.5 * v["wagon.bogie.wheelbase"]
-        rule = f"must be at most half the wheelbase, {shown(most)} m"
-        yield _finding(key, rule, _metres(v[key]), f"write `{shown(most)} m` or less")
-    if v.has(key, "track.domain.length") and v["track.domain.length"] / v[key] > MOST_ELEMENTS:
+        rule = f"must be at most half the wheelbase, {at_most(most)} m"
+        yield _finding(key, rule, _metres(v[key]), f"write `{at_most(most)} m` or less")
+    if v.has(key, "track.domain.length") and v[key] < v["track.domain.length"] / MOST_ELEMENTS:
         rule = f"must give at most {MOST_ELEMENTS} elements over {shown(v['track.domain.length'])} m"
         least = v["track.domain.length"] / MOST_ELEMENTS
-        yield _finding(key, rule, _metres(v[key]), f"write `{shown(least)} m` or more")
+        yield _finding(key, rule, _metres(v[key]), f"write `{at_least(least)} m` or more")
 
 
 def _adhesion(v: Values) -> Iterator[Finding]:
     area, slip = "contact.adhesion.kA", "contact.adhesion.kS"
     if v.has(area, slip) and v[slip] > v[area]:
-        rule = f"must be at most kA, {shown(v[area])}"
-        yield _finding(slip, rule, f"`{shown(v[slip])}`", f"write `{shown(v[area])}` or less, or exchange kA and kS")
+        most = at_most(v[area])
+        rule = f"must be at most kA, {most}"
+        yield _finding(slip, rule, f"`{shown(v[slip])}`", f"write `{most}` or less, or exchange kA and kS")
 
 
 def _braking(v: Values) -> Iterator[Finding]:
     stop, start = "braking.stop_speed", "braking.initial_speed"
     if v.has(stop, start) and v[stop] >= v[start]:
-        rule = f"must be below the initial speed, {shown(v[start])} m/s"
+        rule = f"must be below the initial speed, {at_most(v[start])} m/s"
         yield _finding(
             stop,
             rule,
@@ -147,15 +150,15 @@ def _braking(v: Values) -> Iterator[Finding]:
         )
     limit, onset = "solver.time_limit", "braking.onset"
     if v.has(limit, onset) and v[onset] >= v[limit]:
-        rule = f"must come before the solver's time limit, {shown(v[limit])} s"
+        rule = f"must come before the solver's time limit, {at_most(v[limit])} s"
         yield _finding(onset, rule, f"`{shown(v[onset])} s`", "write an earlier onset or a later `solver.time_limit`")
 
 
 def _rows(v: Values) -> Iterator[Finding]:
     interval, limit = "output.interval", "solver.time_limit"
-    if v.has(interval, limit) and v[limit] / v[interval] > MOST_ROWS:
+    if v.has(interval, limit) and v[interval] < v[limit] / MOST_ROWS:
         rule = f"must give at most {MOST_ROWS} rows up to the time limit of {shown(v[limit])} s"
-        fix = f"write `{shown(v[limit] / MOST_ROWS)} s` or more, or a lower `solver.time_limit`"
+        fix = f"write `{at_least(v[limit] / MOST_ROWS)} s` or more, or a lower `solver.time_limit`"
         yield _finding(interval, rule, f"`{shown(v[interval])} s`", fix)
 
 
@@ -187,7 +190,8 @@ def _baffles(v: Values) -> Iterator[Finding]:
             rule = f"must lie inside the {shown(length)} m long tank, a cell or more from its walls and each other"
             given = _metres(baffles[place].position)
             path = ("tank", "baffles", place, "position")
-            yield Finding(path, rule, given, f"write a place between `0 m` and `{shown(length)} m`")
+            between = f"`{at_least(length / cells)} m` and `{at_most(length - length / cells)} m`"
+            yield Finding(path, rule, given, f"write a place between {between}, a cell or more from the others")
 
 
 def _slot(v: Values) -> Iterator[Finding]:
@@ -197,8 +201,10 @@ def _slot(v: Values) -> Iterator[Finding]:
         return
     least = math.sqrt(STANDARD_GRAVITY * extent[1] / WIDEST_SLOT)
     if v[key] < least:
-        rule = f"must be at least {shown(least)} m/s, or the slot above the roof is wider than a fifth of the tank"
-        yield _finding(key, rule, f"`{shown(v[key])} m/s`", "leave it out, or write `30 m/s` or more")
+        rule = f"must be at least {at_least(least)} m/s, or the slot above the roof is wider than a fifth of the tank"
+        usual = "leave it out, or write `30 m/s` or more"
+        fix = usual if least <= USUAL_SLOT_SPEED else f"write `{at_least(least)} m/s` or more"
+        yield _finding(key, rule, f"`{shown(v[key])} m/s`", fix)
 
 
 def tank_extent(v: Values) -> tuple[float, float] | None:
@@ -216,12 +222,12 @@ def tank_extent(v: Values) -> tuple[float, float] | None:
 def _tank_on_wagon(v: Values) -> Iterator[Finding]:
     bottom = "tank.bottom_height"
     if v.has("tank.shape") and bottom not in v.explicit:
-        fix = "write `bottom_height: 1.15 m`, the height of the tank's lowest inner point above the rail head"
+        fix = "write the height of the tank's lowest inner point above the rail head, such as `bottom_height: 1.15 m`"
         yield _finding(bottom, "is required for a tank on a wagon", "nothing", fix)
     if v.has("tank.length", "wagon.pivot_spacing"):
         most = LONGEST_TANK * v["wagon.pivot_spacing"]
         if v["tank.length"] > most:
-            rule = f"must be at most {shown(LONGEST_TANK)} pivot spacings, {shown(most)} m"
+            rule = f"must be at most {shown(LONGEST_TANK)} pivot spacings, {at_most(most)} m"
             yield _finding("tank.length", rule, _metres(v["tank.length"]), "write a shorter tank or a longer wagon")
     extent = tank_extent(v)
     if extent is None:

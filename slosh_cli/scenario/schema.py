@@ -65,7 +65,8 @@ def json_schema() -> dict[str, Any]:
         tank["properties"]["bottom_height"].pop("default")
     contact = definitions["Contact"]["properties"]
     own = {"$ref": contact["adhesion"]["$ref"]}
-    contact["adhesion"] |= {"oneOf": [{"enum": sorted(ADHESIONS)}, own]}
+    mu0 = {"anyOf": definitions["Adhesion"]["properties"]["mu0"]["anyOf"]}
+    contact["adhesion"] |= {"anyOf": [{"enum": sorted(ADHESIONS)}, mu0, own]}
     del contact["adhesion"]["$ref"]
     contact["stiffness"].pop("default")
     for definition in (*definitions.values(), schema):

@@ -1,10 +1,11 @@
 """The tank: shape, filling, liquid and slosh coefficients."""
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.alias import Alias, Aliased
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Choice, Count, Number, Quantity, Range, not_an_option, refused_error
 from slosh_cli.scenario.polygon import Outline
@@ -96,7 +97,7 @@ class Baffle(Part):
     )
 
 
-class TankBase(Part):
+class TankBase(Aliased):
     """What tanks of every shape have. Values are of the whole tank."""
 
     length: Annotated[float, Quantity("length", Range(0.05, 200.0), "15.5 m")] = Field(
@@ -126,6 +127,10 @@ class TankBase(Part):
 
 class HorizontalCylinder(TankBase):
     """A circular cylinder lying along the track."""
+
+    aliases: ClassVar[tuple[Alias, ...]] = (
+        Alias("diameter", "radius", 2.0, "3 m", "Inner diameter, m, in place of the radius."),
+    )
 
     shape: Literal["horizontal-cylinder"] = Field(
         default="horizontal-cylinder", description="Cross-section: a circle of the given radius."

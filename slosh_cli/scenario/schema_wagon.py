@@ -1,9 +1,10 @@
 """The wagon: bodies, suspension, running resistance. Values are of the whole wagon unless a text says not."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from slosh_cli.scenario.alias import Alias, Aliased
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Quantity, Range
 
@@ -42,8 +43,12 @@ class Bogie(Part):
     )
 
 
-class Wheelset(Part):
+class Wheelset(Aliased):
     """One of the four wheelsets: two wheels on an axle."""
+
+    aliases: ClassVar[tuple[Alias, ...]] = (
+        Alias("wheel_diameter", "wheel_radius", 2.0, "0.92 m", "Rolling diameter of the wheels, m, for the radius."),
+    )
 
     mass: Annotated[float, Quantity("mass", Range(50.0, 1e4), "1.4 t")] = Field(description="Mass of one wheelset, kg.")
     spin_inertia: Annotated[float, Quantity("moment_of_inertia", Range(0.5, 5e3), "120 kg m^2")] = Field(

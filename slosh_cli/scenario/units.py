@@ -1,177 +1,165 @@
-"""Quantities as people write them (``80 km/h``, ``5 kN m``) to SI floats. The only module that imports pint.
+"""Quantities as people write them (``80 km/h``, ``5 kN m``) to SI floats, and what to write instead of the others.
 
-The registry holds the units below and no others: it is built in milliseconds, where pint's own takes a
-fifth of a second, and a slip such as ``21.3 mT`` is refused instead of being read as a magnetic field.
-There are no free prefixes for the same reason: every accepted name is in the table.
+A remedy never changes a value: what stands after "write" is worth what the text can only have meant, or one of
+the things that it can have meant; what stands after "such as" is an example.
 """
 
 from __future__ import annotations
 
-import difflib
+import itertools
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from typing import Final
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.conversion import DIMENSIONS, PURE, STANDARD_GRAVITY, Dimension, convert, what_it_measures
+from slosh_cli.scenario.numerals import NUMBER_PATTERN, Numeral, plain_signs, read_number
+from slosh_cli.scenario.unit_names import NAMES, READINGS, UnknownUnit, recased, standard_unit
 
-if TYPE_CHECKING:
-    import pint
+__all__ = [
+    "DIMENSIONS", "NUMBER_PATTERN", "STANDARD_GRAVITY", "at_least", "at_most", "convert", "numeral_of", "offered",
+    "parse_quantity", "percentage", "plain", "shown",
+]  # fmt: skip
 
-STANDARD_GRAVITY: Final = 9.81
-"""m/s^2, the value of the model everywhere."""
-
-_DEFINITIONS: Final[dict[str, str]] = {
-    "kg": "[mass]",
-    "m": "[length]",
-    "s": "[time]",
-    "rad": "[]",
-    # mass
-    "g": "0.001 * kg",
-    "t": "1000 * kg",
-    "tonne": "1000 * kg",
-    "lb": "0.45359237 * kg",
-    # length and volume
-    "um": "0.000001 * m",
-    "mm": "0.001 * m",
-    "cm": "0.01 * m",
-    "dm": "0.1 * m",
-    "km": "1000 * m",
-    "inch": "0.0254 * m",
-    "ft": "0.3048 * m",
-    "L": "0.001 * m ** 3",
-    "l": "0.001 * m ** 3",
-    # time, speed, angle
-    "us": "0.000001 * s",
-    "ms": "0.001 * s",
-    "min": "60 * s",
-    "h": "3600 * s",
-    "kmh": "1000 * m / (3600 * s)",
-    "kph": "1000 * m / (3600 * s)",
-    "mph": "0.44704 * m / s",
-    "deg": f"{math.pi / 180!r} * rad",
-    # a frequency in hertz is meant as an angular one wherever this program asks for it
-    "Hz": f"{2 * math.pi!r} * rad / s",
-    "rpm": f"{math.pi / 30!r} * rad / s",
-    # force, torque, pressure
-    "N": "kg * m / s ** 2",
-    "daN": "10 * N",
-    "kN": "1000 * N",
-    "MN": "1000000 * N",
-    "lbf": "4.4482216152605 * N",
-    "Nm": "N * m",
-    "kNm": "1000 * N * m",
-    "J": "N * m",
-    "kJ": "1000 * N * m",
-    "Pa": "N / m ** 2",
-    "hPa": "100 * Pa",
-    "kPa": "1000 * Pa",
-    "MPa": "1000000 * Pa",
-    "GPa": "1000000000 * Pa",
-    "bar": "100000 * Pa",
-}
+_COMMON = re.compile(rf"\s*({NUMBER_PATTERN})\s*([A-Za-z].*?)\s*")
+"""Nearly every quantity, read without a detour."""
+_LONGEST: Final = 200
+"""Characters; nothing longer is a quantity."""
+_UNCLEAR: Final = {("angular_frequency", "1/min"): ("rpm", "rad/min")}
+"""Units that are read, but mean different things to different people."""
 
 
 @dataclass(frozen=True)
-class Dimension:
-    """A kind of quantity: what it is called, its SI unit, and the units to suggest with their factors to SI.
+class _Wanted:
+    """What a text has to be: its dimension, the SI values the caller can use, and an example."""
 
-    Quantities in these units, which is nearly all there are, are read without pint: it takes longer to load
-    than `slosh check` takes for everything else.
-    """
-
-    name: str
-    noun: str
-    unit: str
-    factors: Mapping[str, float]
+    kind: Dimension
+    fits: Callable[[float], bool] | None
+    example: str
 
     @property
-    def units(self) -> tuple[str, ...]:
-        """The units to suggest, the SI unit among them."""
-        return tuple(self.factors)
+    def rule(self) -> str:
+        return f"must be {self.kind.noun} with its unit, such as {_either(self.kind.units)}"
+
+    @property
+    def like(self) -> str:
+        """An example that is plainly one."""
+        return f"write a number and a unit, such as `{self.example}`"
+
+    @property
+    def finite(self) -> str:
+        """The same where no unit is at fault."""
+        return f"write a finite number and a unit, such as `{self.example}`"
+
+    def accepts(self, number: str, unit: str) -> bool:
+        try:
+            value = convert(float(number), unit, self.kind.name)
+        except ValueError:
+            return False
+        return math.isfinite(value) and (self.fits is None or self.fits(value))
+
+    def offer(self, numbers: Iterable[str], units: Iterable[str]) -> str:
+        """The numbers in the units, as far as the caller can use them; else an example."""
+        numbers = tuple(numbers)
+        pairs = itertools.product(numbers, units)
+        texts = [f"{number} {unit}" for number, unit in pairs if self.accepts(number, unit)]
+        sure = len(numbers) == 1 or len(texts) != 1
+        return (offered(texts) + ("" if sure else " if that is meant")) or self.like
 
 
-def _dimension(name: str, noun: str, unit: str, factors: Mapping[str, float] | None = None) -> Dimension:
-    return Dimension(name, noun, unit, factors or {unit: 1.0})
+def offered(texts: list[str]) -> str:
+    """``write `a` or `b`, whichever is meant``; empty where there is nothing to offer."""
+    written = " or ".join([", ".join(f"`{text}`" for text in texts[:-1]), f"`{texts[-1]}`"] if texts[1:] else [])
+    if not texts:
+        return ""
+    return f"write {written}, whichever is meant" if written else f"write `{texts[0]}`"
 
 
-DIMENSIONS: Final[dict[str, Dimension]] = {
-    entry.name: entry
-    for entry in (
-        _dimension("mass", "a mass", "kg", {"kg": 1.0, "t": 1e3}),
-        _dimension("length", "a length", "m", {"m": 1.0, "mm": 1e-3}),
-        _dimension("time", "a time", "s", {"s": 1.0, "ms": 1e-3}),
-        _dimension("speed", "a speed", "m/s", {"km/h": 1 / 3.6, "m/s": 1.0}),
-        _dimension("acceleration", "an acceleration", "m/s^2", {"m/s^2": 1.0, "g": STANDARD_GRAVITY}),
-        _dimension("angular_frequency", "an angular frequency", "rad/s", {"rad/s": 1.0, "Hz": 2 * math.pi}),
-        _dimension("force", "a force", "N", {"N": 1.0, "kN": 1e3}),
-        _dimension("torque", "a torque", "N m", {"kN m": 1e3, "N m": 1.0}),
-        _dimension("modulus", "an elastic modulus", "Pa", {"GPa": 1e9, "Pa": 1.0}),
-        _dimension("density", "a density", "kg/m^3"),
-        _dimension("mass_per_length", "a mass per length", "kg/m"),
-        _dimension("first_moment", "a mass times a length", "kg m"),
-        _dimension("moment_of_inertia", "a moment of inertia", "kg m^2"),
-        _dimension("second_moment", "a second moment of area", "m^4", {"m^4": 1.0, "cm^4": 1e-8}),
-        _dimension("stiffness", "a stiffness", "N/m", {"N/m": 1.0, "kN/m": 1e3}),
-        _dimension("damping", "a force per speed", "N s/m", {"N s/m": 1.0, "kN s/m": 1e3}),
-        _dimension("quadratic_resistance", "a force per squared speed", "N s^2/m^2"),
-        _dimension("stiffness_per_length", "a stiffness per length", "N/m^2", {"N/m^2": 1.0, "MN/m^2": 1e6}),
-        _dimension("damping_per_length", "a damping per length", "N s/m^2", {"N s/m^2": 1.0, "kN s/m^2": 1e3}),
-        _dimension("shear_damping", "a shear damping", "N s", {"N s": 1.0, "kN s": 1e3}),
-        _dimension("contact_stiffness", "a Hertzian contact stiffness", "N/m^1.5"),
-        _dimension("inverse_speed", "an inverse speed", "s/m"),
-    )
-}
-
-NUMBER_PATTERN: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_QUANTITY = re.compile(rf"\s*({NUMBER_PATTERN})(?![0-9.,])\s*(.*?)\s*", re.DOTALL)
-_UNIT = re.compile(r"(?:1\s*/\s*)?(?:[A-Za-z()/*\s]|(?:\^|\*\*)-?[0-9](?:\.[0-9])?)+")
-_NAME = re.compile(r"[A-Za-z]+")
-_LONGEST: Final = 200
-"""Characters; nothing longer is a quantity."""
+def numeral_of(text: str) -> Numeral | None:
+    """The number that a text begins with and what follows it; None where there is none."""
+    return read_number(plain_signs(text).strip()) if len(text) <= _LONGEST else None
 
 
-@lru_cache(maxsize=1)
-def _registry() -> pint.UnitRegistry[Any]:
-    """The lean registry, built at first use so that importing this module stays cheap."""
-    import pint  # 0.2 s, and only a unit that is in no table of DIMENSIONS needs it
-
-    registry: pint.UnitRegistry[Any] = pint.UnitRegistry(None)
-    for name, definition in _DEFINITIONS.items():
-        registry.define(f"{name} = {definition}")
-    return registry
-
-
-@lru_cache(maxsize=512)
-def _unit(text: str) -> tuple[float, Any]:
-    """Factor to SI and dimensionality of a unit; ValueError when it cannot be read."""
-    normal = text.replace("²", "^2").replace("³", "^3").replace("⁴", "^4").replace("·", " ")
-    if not _UNIT.fullmatch(normal) or any(name not in _DEFINITIONS for name in _NAME.findall(normal)):
-        raise ValueError(text)
-    registry = _registry()
+def percentage(text: str) -> float | None:
+    """The pure number that ``60 %`` stands for; None where the text is no percentage and no clear number."""
+    numeral = numeral_of(text)
+    if numeral is None or len(numeral.readings) > 1 or not numeral.rest:
+        return None
     try:
-        quantity = registry.parse_expression(normal.replace("^", "**"))
-        base = registry.Quantity(1.0, quantity.units).to_base_units()
-    except Exception as error:  # pint raises a wide choice: tokenizer, definition, syntax and type errors
-        raise ValueError(text) from error
-    return float(base.magnitude), base.dimensionality
+        parts = PURE.get(standard_unit(numeral.rest))
+    except UnknownUnit:
+        return None
+    return float(numeral.readings[0]) / parts if parts else None
 
 
-def _dimensionality(dimension: Dimension) -> Any:
-    return _unit(dimension.unit)[1]
+def parse_quantity(
+    text: object, dimension: str, fits: Callable[[float], bool] | None = None, example: str = ""
+) -> float:
+    """Read ``'80 km/h'`` and the like as an SI float.
+
+    `dimension` is a key of DIMENSIONS. For ``acceleration`` the unit ``g`` is standard gravity, 9.81 m/s^2;
+    everywhere else it is the gram. `fits` tells which SI values the caller could use, `example` is a quantity
+    that would do; both only choose what to suggest. Raises ValueRefused with the rule, what was given and what
+    to write.
+    """
+    kind = DIMENSIONS[dimension]
+    common = _COMMON.fullmatch(text) if isinstance(text, str) and len(text) <= _LONGEST else None
+    value = float(common[1]) * kind.factors.get(common[2], math.nan) if common else math.nan
+    if math.isfinite(value):
+        return value
+    wanted = _Wanted(kind, fits, example or f"1 {kind.units[0]}")
+    if not isinstance(text, str):
+        raise _bare(text, wanted)
+    numeral = numeral_of(text)
+    if numeral is None:
+        raise ValueRefused(wanted.rule, plain(text), wanted.finite)
+    numbers, unit = numeral
+    if not unit:
+        raise ValueRefused(wanted.rule, f"{plain(text)} without a unit", wanted.offer(numbers, kind.units))
+    try:
+        unclear = _UNCLEAR.get((dimension, standard_unit(unit)))
+        value = convert(float(numbers[0]), unit, dimension)
+    except ValueError as error:
+        given, fix = _unit_advice(numbers, unit, error, wanted)
+        raise ValueRefused(wanted.rule, f"{plain(text.strip())}{given}", fix) from None
+    if not math.isfinite(value):
+        raise ValueRefused(wanted.rule, f"{plain(text)}, which overflows", wanted.finite)
+    if unclear:
+        about = f"{plain(text)}, which are turns to some people and radians to others"
+        raise ValueRefused(wanted.rule, about, wanted.offer(numbers, unclear))
+    if len(numbers) > 1:
+        about = f"{plain(text.strip())}, whose comma can part thousands or decimals"
+        raise ValueRefused(wanted.rule, about, wanted.offer(numbers, [unit]))
+    return value
 
 
-def convert(value: float, unit: str, dimension: str) -> float:
-    """`value` in `unit` as an SI float. ValueError when the unit is unknown or of another dimension."""
-    known = DIMENSIONS[dimension].factors.get(unit)
-    if known is not None:
-        return value * known
-    factor, dimensionality = _unit(unit)
-    if dimensionality != _dimensionality(DIMENSIONS[dimension]):
-        raise ValueError(unit)
-    return value * factor
+def _bare(value: object, wanted: _Wanted) -> ValueRefused:
+    """The refusal of what is no text."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return ValueRefused(wanted.rule, plain(value), wanted.like)
+    if not abs(value) < math.inf or abs(value) > 1e300:
+        return ValueRefused(wanted.rule, plain(value), wanted.finite)
+    fix = wanted.offer([str(value)], wanted.kind.units)
+    return ValueRefused(wanted.rule, f"`{value}` without a unit", fix)
+
+
+def _unit_advice(numbers: tuple[str, ...], unit: str, error: ValueError, wanted: _Wanted) -> tuple[str, str]:
+    """(what is wrong with the unit, what to write) for a unit that was not accepted."""
+    if not isinstance(error, UnknownUnit):
+        noun = what_it_measures(unit)
+        return f", which is {noun}" if noun else ", which has another dimension", wanted.like
+    if error.name in READINGS:
+        units = [re.sub(rf"\b{error.name}\b", reading, unit) for reading in READINGS[error.name]]
+        return f", where `{error.name}` can be several units", wanted.offer(numbers, units)
+    fix = wanted.like
+    likely = [other for other in recased(unit) if wanted.accepts(numbers[0], other)]
+    if len({convert(1.0, other, wanted.kind.name) for other in likely}) == 1:
+        fix = wanted.offer(numbers, likely[:1])
+    name = error.name or next((name for name in re.findall("[A-Za-z]+", unit) if name not in NAMES), "")
+    return f", where `{name}` is no unit known here" if error.name else f", where `{unit}` cannot be read", fix
 
 
 def shown(value: float) -> str:
@@ -179,49 +167,21 @@ def shown(value: float) -> str:
     return f"{value:.6g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
 
 
-def parse_quantity(text: object, dimension: str, fits: Callable[[float], bool] | None = None) -> float:
-    """Read ``'80 km/h'`` and the like as an SI float.
-
-    `dimension` is a key of DIMENSIONS. For ``acceleration`` the unit ``g`` is standard gravity, 9.81 m/s^2;
-    everywhere else it is the gram. `fits` tells which SI values the caller could use; it only chooses the
-    unit to suggest where none was given. Raises ValueRefused with the rule, what was given and what to write.
-    """
-    kind = DIMENSIONS[dimension]
-    rule = f"must be {kind.noun} with its unit, such as {_either(kind.units)}"
-    if not isinstance(text, str):
-        raise _bare(text, rule, kind, fits)
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None:
-        raise ValueRefused(rule, plain(text), _number_fix(text, kind))
-    number, unit = match.groups()
-    value = float(number)
-    if not math.isfinite(value):
-        raise ValueRefused(rule, f"`{text}`, which overflows", f"write a finite value, such as `1 {kind.units[0]}`")
-    if not unit:
-        raise _bare(number, rule, kind, fits)
-    try:
-        return convert(value, unit, dimension)
-    except ValueError:
-        pass
-    given, fix = _unit_advice(number, unit, kind)
-    raise ValueRefused(rule, f"{plain(text.strip())}{given}", fix)
+def at_least(value: float) -> str:
+    """A lower bound for a message: as `shown`, but never below the bound."""
+    return _rounded(value, ROUND_CEILING)
 
 
-def _bare(value: object, rule: str, kind: Dimension, fits: Callable[[float], bool] | None) -> ValueRefused:
-    """The refusal of anything that is not text with a unit."""
-    example = f"such as `1 {kind.units[0]}`"
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        return ValueRefused(rule, plain(value), f"write a number and a unit, {example}")
-    if not math.isfinite(float(value)):
-        return ValueRefused(rule, f"`{value}`", f"write a finite number and a unit, {example}")
-    likely = [unit for unit in kind.units if fits and fits(convert(float(value), unit, kind.name))]
-    fix = _whichever(str(value), tuple(likely) or kind.units)
-    return ValueRefused(rule, f"`{value}` without a unit", fix)
+def at_most(value: float) -> str:
+    """An upper bound for a message: as `shown`, but never above the bound."""
+    return _rounded(value, ROUND_FLOOR)
 
 
-def _whichever(number: str, units: tuple[str, ...]) -> str:
-    written = " or ".join(f"`{number} {unit}`" for unit in units)
-    return f"write {written}" + (", whichever is meant" if len(units) > 1 else "")
+def _rounded(value: float, rounding: str) -> str:
+    near = float(shown(value))
+    if near == value or (near > value) == (rounding == ROUND_CEILING):
+        return shown(value)
+    return shown(float(Context(prec=6, rounding=rounding).create_decimal(Decimal(value))))
 
 
 def plain(value: object) -> str:
@@ -236,55 +196,6 @@ def plain(value: object) -> str:
         return f"a list of {len(value)}"
     text = str(value)
     return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
-
-
-def _number_fix(text: str, kind: Dimension) -> str:
-    example = f"`1.5 {kind.units[0]}`"
-    if re.match(r"\s*[+-]?[0-9]+,[0-9]", text):
-        return f"write the number with a decimal point and without separators, such as {example}"
-    return f"write a finite number and a unit, such as {example}"
-
-
-def _unit_advice(number: str, unit: str, kind: Dimension) -> tuple[str, str]:
-    """(what is wrong with the unit, what to write) for a unit that was not accepted."""
-    example = _whichever(number, kind.units)
-    try:
-        dimensionality = _unit(unit)[1]
-    except ValueError:
-        repaired = _repaired(unit, kind)
-        unknown = [name for name in _NAME.findall(unit) if name not in _DEFINITIONS]
-        about = f", where `{unknown[0]}` is no unit known here" if unknown else f", where `{unit}` cannot be read"
-        return about, f"write `{number} {repaired}`" if repaired else example
-    for other in DIMENSIONS.values():
-        if _dimensionality(other) == dimensionality:
-            return f", which is {other.noun}", example
-    return ", which has another dimension", example
-
-
-def _repaired(unit: str, kind: Dimension) -> str:
-    """The unit that was probably meant, or empty: other case, ``kgm`` in one, ``m/s2`` without ``^``."""
-
-    def fits(candidate: str) -> bool:
-        try:
-            return bool(_unit(candidate)[1] == _dimensionality(kind))
-        except ValueError:
-            return False
-
-    def known(match: re.Match[str]) -> str:
-        name = match.group()
-        if name in _DEFINITIONS:
-            return name
-        for cut in range(1, len(name)):
-            if name[:cut] in _DEFINITIONS and name[cut:] in _DEFINITIONS:
-                return f"{name[:cut]} {name[cut:]}"
-        same = [entry for entry in _DEFINITIONS if entry.lower() == name.lower()]
-        return (same or difflib.get_close_matches(name, _DEFINITIONS, 1) or [name])[0]
-
-    powered = re.sub(r"([A-Za-z])([0-9])", r"\1^\2", unit)
-    for candidate in (_NAME.sub(known, powered), _NAME.sub(known, powered.replace("-", " "))):
-        if fits(candidate):
-            return candidate
-    return ""
 
 
 def _either(units: tuple[str, ...]) -> str:

@@ -9,7 +9,8 @@ from decimal import Decimal
 from typing import Any, Final
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.units import NUMBER_PATTERN
+from slosh_cli.scenario.unit_names import UnknownUnit, standard_unit
+from slosh_cli.scenario.units import NUMBER_PATTERN, numeral_of, percentage
 
 MOST_VALUES: Final = 100_000
 """Values of one axis; more are a slip in the step."""
@@ -32,13 +33,13 @@ class Axis:
 
     @property
     def unit(self) -> str:
-        """The unit that all values share; empty for pure numbers, words and mixtures."""
-        units = {measure[1] if measure else "" for measure in map(measured, self.values)}
+        """The unit that all values share, in standard form; empty for pure numbers, words and mixtures."""
+        units = {measure[1] if measure else "" for measure in map(_told, self.values)}
         return units.pop() if len(units) == 1 else ""
 
     def plain(self, position: int) -> float | str:
         """The value at `position` as a number in `unit`, or as text where the axis has no number there."""
-        measure = measured(self.values[position])
+        measure = _told(self.values[position])
         if measure is None or measure[1] != self.unit:
             return self.values[position]
         return measure[0]
@@ -48,6 +49,19 @@ def measured(text: str) -> tuple[float, str] | None:
     """Number and unit of a text such as ``10 km/h``, None where it is something else."""
     match = _MEASURE.fullmatch(text.strip())
     return (float(match[1]), match[2].strip()) if match else None
+
+
+def _told(text: str) -> tuple[float, str] | None:
+    """Number and unit of a value as a table tells it: ``21 300 kg·m⁻³`` as 21300 ``kg/m^3``, ``60 %`` as 0.6."""
+    share, numeral = percentage(text), numeral_of(text)
+    if share is not None:
+        return share, ""
+    if numeral is None or len(numeral.readings) > 1:
+        return None
+    try:
+        return float(numeral.readings[0]), standard_unit(numeral.rest) if numeral.rest else ""
+    except UnknownUnit:
+        return measured(text)
 
 
 def values_of(spec: str, bare_unit: str = "") -> tuple[str, ...]:
@@ -115,7 +129,9 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
         raise ValueRefused("must be a range `start:stop:step`", given, "write all three, such as `2.5:30:2.5`")
     numbers, units = zip(*(_number_and_unit(part) for part in parts), strict=True)
     if {written for written in units if written} - {unit}:
-        raise ValueRefused("must have one unit in a range", given, "write the unit once, at the end: `10:14:1 m`")
+        raise ValueRefused(
+            "must have one unit in a range", given, "write the unit once, at the end, such as `10:14:1 m`"
+        )
     start, stop, step = numbers
     if step == 0 or (stop - start) * step < 0:
         rule = "must have a step that leads from start to stop"
@@ -124,9 +140,11 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
         raise ValueRefused(f"must have at most {MOST_VALUES} values", given, "widen the step")
     count = round((stop - start) / step)
     if abs((stop - start) / step - count) > Decimal("1e-9") * max(count, 1):
-        last = _decimal(start + count * step)
+        last = f"{_decimal(start + int((stop - start) / step) * step)}:{_decimal(step)}{unit and f' {unit}'}"
         rule = "must reach its stop in whole steps, because both ends are in"
-        raise ValueRefused(rule, given, f"write `{_decimal(start)}:{last}:{_decimal(step)}` or another step")
+        raise ValueRefused(
+            rule, given, f"write a stop within reach, such as `{_decimal(start)}:{last}`, or another step"
+        )
     texts = [_decimal(start + k * step) for k in range(count)] + [_decimal(stop)]
     return [f"{text} {unit}" if unit else text for text in texts]
 

@@ -93,3 +93,15 @@ def test_liquid_and_solid_differ_by_less_than_a_per_cent_at_80_km_h(stop):
     liquid, solid = stop("paper_80").braking_distance_m, stop("paper_80_solid").braking_distance_m
     assert liquid == pytest.approx(solid, rel=1e-2)
     assert liquid != pytest.approx(solid, rel=1e-4)  # but they are not the same run
+
+
+@pytest.mark.parametrize("mu", ["0.1", "15 %"])
+def test_locked_wheels_on_plain_coulomb_friction_stop_in_the_distance_of_a_sliding_block(stop, mu):
+    """`V^2 / (2 mu g)`: the weight is what it is, so that pitching moves load between wheels and nothing else."""
+    none = "wagon.running_resistance={constant: 0 N, linear: 0 N s/m, quadratic: 0 N s^2/m^2}"
+    braking = ("braking.torque=40 kN m", "braking.onset=0 s")
+    result = stop("paper_80_solid", f"contact.adhesion={mu}", none, *braking)
+    friction = {"0.1": 0.1, "15 %": 0.15}[mu]
+    assert result.status == "stopped"
+    block = (SPEEDS["paper_80_solid"] ** 2 - STOP_SPEED**2) / (2 * friction * 9.81)
+    assert result.braking_distance_m == pytest.approx(block, rel=1e-4)

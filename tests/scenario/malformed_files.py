@@ -152,7 +152,7 @@ OVERRIDES = (
     override(
         "override with a bad unit", "braking.torque=12 kX m",
         expected=(
-            (TORQUE, "braking.torque", "must be a torque", "`kX` is no unit known here", "write `12 kN m`"),
+            (TORQUE, "braking.torque", "must be a torque", "`kX` is no unit known here", "such as `5 kN m`"),
         ),
     ),
     override(
@@ -300,8 +300,8 @@ SEVERAL = (
             ("0.02 m/s", "100 km/h"),
         ),
         (
-            Expected(5, "wagon.car_body.mass", "must be a mass from 500 kg", "`21.3 kg`", "write `21.3 t`"),
-            Expected(10, "wagon.bogie.wheelbase", "must be a length", "which is a mass", "write `1.8 m`"),
+            Expected(5, "wagon.car_body.mass", "must be a mass from 500 kg", "`21.3 kg`", "such as `21.3 t`"),
+            Expected(10, "wagon.bogie.wheelbase", "must be a length", "which is a mass", "such as `1.8 m`"),
             Expected(25, "tank.fill", "must be given once", "on lines 24 and 25", "keep one"),
             Expected(29, "tank.coefficients.0.frequenzy", "is not a key", "`frequenzy`", "write `frequency`"),
             Expected(38, "track.domain.length", "must be a length", "`50` without a unit", "write `50 m`"),
@@ -320,7 +320,7 @@ SEVERAL = (
                 "write `0.46 m`",
             ),
             Expected(
-                None, "braking.torque", "must be a torque", "`12 kN`, which is a force", "write `12 kN m`",
+                None, "braking.torque", "must be a torque", "`12 kN`, which is a force", "such as `5 kN m`",
                 TORQUE,
             ),
             Expected(None, "tank.shpe", "is not a key of a tank", "`shpe`", "`shape`", "--set tank.shpe"),

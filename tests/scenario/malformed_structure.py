@@ -65,13 +65,18 @@ CHOICES = (
     one(
         "adhesion misspelt", "adhesion: dry", "adhesion: Wett",
         (
-            43, "contact.adhesion", "must be `dry`, `wet` or a mapping of mu0, A, B, kA and kS", "`Wett`",
-            "write `wet`",
+            43, "contact.adhesion",
+            "must be `dry`, `wet`, a coefficient of friction from 0.005 to 1.5 or a mapping of mu0, A, B, kA and kS",
+            "`Wett`", "write `wet`",
         ),
     ),
     one(
-        "adhesion as a number", "adhesion: dry", "adhesion: 0.3",
-        (43, "contact.adhesion", "must be `dry`, `wet` or a mapping", "`0.3`", "{mu0: 0.55"),
+        "adhesion as a number out of range", "adhesion: dry", "adhesion: 30",
+        (43, "contact.adhesion", "must be `dry`, `wet`, a coefficient", "`30`", "within the range, such as `0.55`"),
+    ),
+    one(
+        "adhesion as another word", "adhesion: dry", "adhesion: ice",
+        (43, "contact.adhesion", "must be `dry`, `wet`, a coefficient", "`ice`", "such as `0.15` or `{mu0: 0.55"),
     ),
     one(
         "adhesion, own, incomplete", "adhesion: dry", "adhesion: {mu0: 0.3, A: 0.4, B: 0.2, kA: 0.3}",
@@ -79,7 +84,7 @@ CHOICES = (
             43, "contact.adhesion.B", "must be an inverse speed with its unit", "`0.2` without a unit",
             "write `0.2 s/m`",
         ),
-        (43, "contact.adhesion.kS", "is required", "nothing", "write `kS: 0.4`"),
+        (43, "contact.adhesion.kS", "is required", "nothing", "such as `kS: 0.4`"),
     ),
     one(
         "coefficients misspelt",
@@ -105,7 +110,7 @@ POLYGONS = (
         "polygon with two corners", "points: [[0, 0], [1, 1]]", "must have at least three corners", "2",
         "write",
     ),
-    polygon("polygon as a word", "points: round", "must be a list of corners", "`round`", "write `points:"),
+    polygon("polygon as a word", "points: round", "must be a list of corners", "`round`", "such as `points:"),
     polygon(
         "polygon with a corner of three numbers", "points: [[-1, 0], [1, 0, 0], [1, 2], [-1, 2]]",
         "corner 2 is not", "a list of 3", "write the corner as `[y, z]`",

@@ -91,21 +91,21 @@ UNITS = (
         "length where a mass belongs", "    mass: 1.8 t", "    mass: 1.8 m",
         (
             7, "wagon.bogie.mass", "must be a mass with its unit", "`1.8 m`, which is a length",
-            "write `1.8 kg` or `1.8 t`",
+            "write a number and a unit, such as `1.8 t`",
         ),
     ),
     one(
         "force where a torque belongs", "5 kN m", "5 kN",
         (
             46, "braking.torque", "must be a torque with its unit", "`5 kN`, which is a force",
-            "write `5 kN m`",
+            "such as `5 kN m`",
         ),
     ),
     one(
         "dimension without a name", "poisson_ratio: 0.3", "poisson_ratio: 0.3\n  stiffness: 9e10 N/m^2.5",
         (
             41, "contact.stiffness", "must be a Hertzian contact stiffness", "which has another dimension",
-            "write `9e10 N/m^1.5`",
+            "such as `9.4e10 N/m^1.5`",
         ),
     ),
     one(
@@ -116,53 +116,78 @@ UNITS = (
         ),
     ),
     one(
-        "units run together", "pitch_inertia: 1700 kg m^2", "pitch_inertia: 1700 kgm^2",
+        "units run together with one of them in the wrong case", "pitch_inertia: 1700 kg m^2",
+        "pitch_inertia: 1700 Kgm2",
         (
-            8, "wagon.bogie.pitch_inertia", "must be a moment of inertia", "`kgm` is no unit known here",
-            "write `1700 kg m^2`",
+            8, "wagon.bogie.pitch_inertia", "must be a moment of inertia", "`Kgm` is no unit known here",
+            "write `1700 kgm2`",
         ),
     ),
     one(
-        "power without a sign", "density: 830 kg/m^3", "density: 830 kg/m3",
+        "power apart from its unit", "density: 830 kg/m^3", "density: 830 kg/m 3",
         (
-            26, "tank.liquid.density", "must be a density with its unit", "`kg/m3` cannot be read",
-            "write `830 kg/m^3`",
+            26, "tank.liquid.density", "must be a density with its unit", "`kg/m 3` cannot be read",
+            "such as `830 kg/m^3`",
         ),
     ),
     one(
-        "hyphen between units", "5 kN m", "5 kN-m",
-        (46, "braking.torque", "must be a torque with its unit", "`kN-m` cannot be read", "write `5 kN m`"),
+        "pressure where a torque belongs", "5 kN m", "3.8 bar",
+        (
+            46, "braking.torque", "must be a torque with its unit", "`3.8 bar`, which is a pressure",
+            "write a number and a unit, such as `5 kN m`",
+        ),
     ),
     one(
         "unit that does not exist", "12 m", "12 parsec",
         (
             15, "wagon.pivot_spacing", "must be a length with its unit", "`parsec` is no unit known here",
-            "write `12 m`",
+            "such as `12 m`",
         ),
     ),
     one(
         "temperature", "    mass: 1.4 t", "    mass: 1.4 degC",
         (
             12, "wagon.wheelset.mass", "must be a mass with its unit", "`degC` is no unit known here",
-            "write `1.4 kg`",
+            "such as `1.4 t`",
         ),
     ),
     one(
         "unit that cannot be parsed", "12 m", "12 m//",
-        (15, "wagon.pivot_spacing", "must be a length with its unit", "`m//` cannot be read", "write `12 m`"),
+        (15, "wagon.pivot_spacing", "must be a length with its unit", "`m//` cannot be read", "such as `12 m`"),
     ),
     one(
-        "decimal comma", "0.46 m", "0,46 m",
+        "comma of thousands or decimals", "    mass: 1.8 t", "    mass: 1,800 kg",
         (
-            14, "wagon.wheelset.wheel_radius", "must be a length with its unit", "`0,46 m`",
-            "with a decimal point",
+            7, "wagon.bogie.mass", "must be a mass with its unit", "`1,800 kg`, whose comma can part",
+            "write `1800 kg` if that is meant",
+        ),
+    ),
+    one(
+        "decimal comma in braces", "{mass: 21.3 t,", "{mass: 21,3 t,",
+        (
+            5, "wagon.car_body.mass", "must be one value, but a comma in braces ends it", "`21,3 t`",
+            "write `21.3 t`",
+        ),
+    ),
+    one(
+        "comma of thousands in braces", "{mass: 21.3 t,", "{mass: 21,300 kg,",
+        (
+            5, "wagon.car_body.mass", "must be one value, but a comma in braces ends it", "`21,300 kg`",
+            "write `21300 kg` if that is meant",
+        ),
+    ),
+    one(
+        "decimal comma of a pure number in braces", "{tolerance: 1.0e-4,", "{tolerance: 0,0001,",
+        (
+            49, "solver.tolerance", "must be one value, but a comma in braces ends it", "`0,0001`",
+            "write `0.0001`",
         ),
     ),
     one(
         "two units for one quantity", "12 m", "12 m 30 cm",
         (
             15, "wagon.pivot_spacing", "must be a length with its unit", "`m 30 cm` cannot be read",
-            "write `12 m`",
+            "such as `12 m`",
         ),
     ),
     one(
@@ -174,20 +199,23 @@ UNITS = (
     ),
     one(
         "unit where a plain number belongs", "fill: 0.5", "fill: 1.5 m",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`1.5 m`", "write the number alone"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`1.5 m`", "number without a unit, such as `0.5`"),
     ),
 )
 
 RANGES = (
     one(
         "kilograms where tonnes were meant", "mass: 21.3 t", "mass: 21.3 kg",
-        (5, "wagon.car_body.mass", "must be a mass from 500 kg to 200000 kg", "`21.3 kg`", "write `21.3 t`"),
+        (
+            5, "wagon.car_body.mass", "must be a mass from 500 kg to 200000 kg", "`21.3 kg`",
+            "such as `21.3 t`, or is its unit meant to be `t`?",
+        ),
     ),
     one(
         "millimetres where metres were meant", "0.46 m", "0.46 mm",
         (
             14, "wagon.wheelset.wheel_radius", "must be a length from 0.1 m to 1.5 m",
-            "`0.46 mm` = 0.00046 m", "write `0.46 m`",
+            "`0.46 mm` = 0.00046 m", "or is its unit meant to be `m`?",
         ),
     ),
     one(
@@ -203,7 +231,7 @@ RANGES = (
     ),
     one(
         "fill in per cent", "fill: 0.5", "fill: 50",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`50`", "such as `0.5`"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`50`", "such as `0.5`, or is it meant in `%`?"),
     ),
     one(
         "tolerance of zero", "1.0e-4", "0",
@@ -230,7 +258,7 @@ RANGES = (
     ),
     one(
         "number too large for a float", "12 m", "1e999 m",
-        (15, "wagon.pivot_spacing", "must be a length", "`1e999 m`, which overflows", "write a finite value"),
+        (15, "wagon.pivot_spacing", "must be a length", "`1e999 m`, which overflows", "write a finite number"),
     ),
     one(
         "nan", "kalker_c11: 4.12", "kalker_c11: .nan",
@@ -323,7 +351,7 @@ SHAPES_AND_TYPES = (
         "mapping for a scalar", "  onset: 0.5 s", "  onset: {value: 0.5, unit: s}",
         (
             47, "braking.onset", "must be a time with its unit", "a mapping",
-            "write a number and a unit, such as `1 s`",
+            "write a number and a unit, such as `0.5 s`",
         ),
     ),
     one(
@@ -351,11 +379,14 @@ SHAPES_AND_TYPES = (
         "tank as a word",
         BASE[BASE.index("tank:"):BASE.index("track:")],
         "tank: cylinder\n",
-        (20, "tank", "must be a mapping", "`cylinder`", "write `shape: horizontal-cylinder`"),
+        (20, "tank", "must be a mapping", "`cylinder`", "such as `shape: horizontal-cylinder`"),
     ),
     one(
         "missing quantity", "    wheel_radius: 0.46 m\n", "",
-        (11, "wagon.wheelset.wheel_radius", "is required", "nothing", "write `wheel_radius: 0.46 m`"),
+        (
+            11, "wagon.wheelset.wheel_radius", "is required", "nothing",
+            "such as `wheel_radius: 0.46 m` or `wheel_diameter: 0.92 m`",
+        ),
     ),
     one(
         "missing mapping", "  domain: {length: 50 m, element_length: 0.5 m}\n", "",
@@ -371,7 +402,7 @@ SHAPES_AND_TYPES = (
     one("missing version", "format: 1\n", "", (1, "format", "is required", "nothing", "write `format: 1`")),
     one(
         "missing in a list item", "      mu: 442163 kg\n", "",
-        (28, "tank.coefficients.0.mu", "is required", "nothing", "write `mu: 442163 kg`"),
+        (28, "tank.coefficients.0.mu", "is required", "nothing", "such as `mu: 442163 kg`"),
     ),
     one(
         "missing shape", "  shape: horizontal-cylinder\n", "",
@@ -384,7 +415,7 @@ SHAPES_AND_TYPES = (
         "missing height of the tank on its wagon", "  bottom_height: 1.15 m\n", "",
         (
             20, "tank.bottom_height", "is required for a tank on a wagon", "nothing",
-            "write `bottom_height: 1.15 m`",
+            "above the rail head, such as `bottom_height: 1.15 m`",
         ),
     ),
     Case(

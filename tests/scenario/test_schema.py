@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from malformed_case import BASE
 from pydantic import ValidationError
+from test_units import ACCEPTED
 
 from slosh_cli.scenario import (
     Adhesion,
@@ -124,8 +125,10 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
     assert (torque["type"], torque["x-unit"], torque["examples"]) == ("string", "N m", ["5 kN m"])
     assert schema["$defs"]["Braking"]["properties"]["stop_speed"]["default"] == "0.02 m/s"
     assert schema["required"] == ["format", "name", "wagon", "tank", "track", "contact", "braking"]
-    assert {"shape", "bottom_height", "radius"} <= set(schema["$defs"]["HorizontalCylinder"]["required"])
-    assert schema["$defs"]["Contact"]["properties"]["adhesion"]["oneOf"][0] == {"enum": ["dry", "wet"]}
+    cylinder = schema["$defs"]["HorizontalCylinder"]
+    assert {"shape", "bottom_height", "length"} <= set(cylinder["required"])
+    assert cylinder["oneOf"] == [{"required": ["radius"]}, {"required": ["diameter"]}]
+    assert schema["$defs"]["Contact"]["properties"]["adhesion"]["anyOf"][0] == {"enum": ["dry", "wet"]}
     assert all(not definition["additionalProperties"] for definition in schema["$defs"].values())
 
 
@@ -141,4 +144,16 @@ def test_json_schema_patterns_accept_their_own_examples_and_no_bare_number() -> 
         assert entry["x-unit"]
         assert entry["x-range"]
         assert all(re.search(entry["pattern"], example) for example in entry["examples"])
-        assert not re.search(entry["pattern"], "12.5")
+        assert not any(re.search(entry["pattern"], bare) for bare in ("12.5", "12.51", "-3", "1e5", "2.6e+6", " 7 "))
+        assert all(re.search(entry["pattern"], text) for text, _, _ in ACCEPTED)
+
+
+@pytest.mark.parametrize("key", ["fill", "damping_ratio", "mu0", "tolerance", "opening"])
+def test_json_schema_takes_percentages_for_pure_numbers(key: str) -> None:
+    found = [entry[key] for entry in (part["properties"] for part in json_schema()["$defs"].values()) if key in entry]
+    assert found
+    for entry in found:
+        number, share = entry["anyOf"]
+        assert number["type"] == "number"
+        assert all(re.search(share["pattern"], text) for text in ("60 %", "60%", "0.5 per cent", "2,5 ‰"))
+        assert not any(re.search(share["pattern"], text) for text in ("60", "60 m", "half"))

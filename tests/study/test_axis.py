@@ -79,6 +79,12 @@ def test_a_range_that_misses_its_stop_names_one_that_does_not() -> None:
     assert values_of(caught.value.fix.split("`")[1])[-1] == "27.5"
 
 
+def test_such_a_range_keeps_its_unit() -> None:
+    with pytest.raises(ValueRefused) as caught:
+        values_of("10:28:10 m/s", "km/h")
+    assert values_of(caught.value.fix.split("`")[1], "km/h") == ("10 m/s", "20 m/s")
+
+
 def test_lists_of_a_file_become_texts() -> None:
     assert listed([0.5, 3, "10 m", {"mu0": 0.3, "B": "0.6 s/m"}, [1, 2.5]]) == (
         "0.5", "3", "10 m", "{mu0: 0.3, B: 0.6 s/m}", "[1, 2.5]",
@@ -102,3 +108,15 @@ def test_an_axis_has_a_unit_when_all_its_values_share_it() -> None:
     assert (mixed.unit, mixed.plain(1)) == ("", "500 mm")
     assert Axis("k", ("0.2", "0.3"), "").plain(0) == 0.2
     assert Axis("k", ("dry", "wet"), "").plain(0) == "dry"
+
+
+def test_a_table_tells_percentages_as_numbers_and_units_in_one_form() -> None:
+    share = Axis("tank.fill", values_of("20:60:20 %"), "")
+    assert (share.values, share.unit) == (("20 %", "40 %", "60 %"), "")
+    assert [share.plain(place) for place in range(3)] == [0.2, 0.4, 0.6]
+    mixed = Axis("tank.fill", ("0.2", "40 %"), "")
+    assert [mixed.plain(place) for place in range(2)] == [0.2, 0.4]
+    density = Axis("tank.liquid.density", ("830 kg·m⁻³", "900 kg/m3"), "")
+    assert (density.unit, density.plain(1)) == ("kg/m^3", 900.0)
+    mass = Axis("wagon.car_body.mass", ("21 300 kg", "22.3e3 kg"), "")
+    assert (mass.unit, mass.plain(0)) == ("kg", 21300.0)

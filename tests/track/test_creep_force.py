@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from slosh_cli.scenario import Contact
-from slosh_cli.scenario.schema_run import ADHESIONS
+from slosh_cli.scenario.schema_run import ADHESIONS, coulomb_adhesion
 from slosh_cli.track.contact import contact_model, creep_force
 from slosh_cli.track.hertz import hertz_contact
 
@@ -20,12 +20,12 @@ SLIPS = (1e-9, 1e-5, 1e-3, 0.02, 0.3, 2.0, 20.0)
 SPEEDS = (1e-3, 0.049, 0.051, 0.5, 5.0, 44.0)
 
 
-def contact_of(rail):
+def contact_of(adhesion):
     given = {"youngs_modulus": 210e9, "poisson_ratio": 0.3, "rail_crown_radius": 0.3, "kalker_c11": 4.12}
-    return contact_model(Contact(**given, adhesion=ADHESIONS[rail]), 0.46)
+    return contact_model(Contact(**given, adhesion=adhesion), 0.46)
 
 
-CONTACTS = {rail: contact_of(rail) for rail in PARAMETERS}
+CONTACTS = {rail: contact_of(ADHESIONS[rail]) for rail in PARAMETERS}
 
 
 def polach(rail, N, slip, speed, power=2):
@@ -145,3 +145,18 @@ def test_ellipse_follows_the_load():
     """For small slip the force goes as a b, that is as N^(2/3); a frozen ellipse would not change it at all."""
     small = [force("wet", N, 1e-6, 10.0) for N in (50e3, 100e3)]
     assert small[1] / small[0] == pytest.approx(2 ** (2 / 3), rel=1e-4)
+
+
+@pytest.mark.parametrize("mu", [0.005, 0.15, 1.5])
+def test_a_coefficient_of_friction_is_plain_coulomb_friction(mu):
+    """With A = 1 and kA = kS = 1 the force rises to mu N and stays there; `4 / (3 pi eps^3)` of it is missing."""
+    contact = contact_of(coulomb_adhesion(mu))
+    for N, speed in product((20e3, 93e3), (0.1, 5.0, 44.0)):
+        a, b = hertz_contact(0.46, 0.30, 210e9, 0.3).semi_axes(N)
+        eps = 210e9 / 2.6 * pi * a * b * 4.12 / (4 * mu * N)
+        locked = creep_force(contact, N, speed, speed)[0]
+        assert locked == pytest.approx(mu * N, rel=3e-6)
+        assert 1 - locked / (mu * N) == pytest.approx(4 / (3 * pi * eps**3), rel=1e-2, abs=1e-15)
+        rising = [creep_force(contact, N, slip * speed, speed)[0] for slip in np.geomspace(1e-5, 3.0, 200)]
+        assert np.all(np.diff(rising) >= -1e-12 * mu * N)
+        assert max(rising) <= mu * N
