@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.diagnosis import leaves_of
 from slosh_cli.scenario.leaves import Quantity, SIValue
 from slosh_cli.scenario.schema_run import ADHESIONS
+from slosh_cli.scenario.tree import leaves_of
 
 
 def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:

@@ -115,7 +115,7 @@ class Contact(Part):
         description="Kalker's longitudinal creep coefficient."
     )
     adhesion: Annotated[Adhesion, BeforeValidator(named_adhesion)] = Field(
-        description="`dry`, `wet`, or Polach's parameters in a mapping."
+        description="`dry`, `wet`, or Polach's parameters in a mapping.", examples=["dry", "wet"]
     )
     stiffness: Annotated[float | None, Quantity("contact_stiffness", Range(1e7, 1e15), "9.4e10 N/m^1.5")] = Field(
         default=None,

@@ -58,7 +58,7 @@ class _Loader(yaml.SafeLoader):
             length += 1
         if self.peek(length) in "\r\n\x85\u2028\u2029":
             self.forward(length)
-            return list(super().scan_plain_spaces(indent, start_mark))
+            return super().scan_plain_spaces(indent, start_mark) or []
         blanks = self.prefix(length)
         self.forward(length)
         return [blanks] if blanks else []
@@ -67,7 +67,7 @@ class _Loader(yaml.SafeLoader):
         """Compose one node; gives up where a file has too many, before all of it has been read."""
         self.composed += 1
         if self.composed > MOST_VALUES:
-            raise _TooManyValuesError(problem="too many values", problem_mark=self.peek_event().start_mark)
+            raise _TooManyValuesError(problem="too many values", problem_mark=self.get_mark())
         return super().compose_node(parent, index)
 
 

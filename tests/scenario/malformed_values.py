@@ -337,7 +337,7 @@ SHAPES_AND_TYPES = (
         "    - 0.69 rad/s",
         (
             28, "tank.coefficients.0", "must be a mapping with the keys frequency, lambda_1", "`0.69 rad/s`",
-            "write these keys under",
+            "write the item as `{frequency: ..., lambda_1",
         ),
     ),
     one(
