@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -16,13 +16,11 @@ from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.leaves import FROM_TEXT
 from slosh_cli.scenario.plain_data import plain_data, si_values, unfold_adhesion
 from slosh_cli.scenario.rules import Finding
-from slosh_cli.scenario.schema import Root, Scenario, TankScenario
+from slosh_cli.scenario.schema import OWN, Root, Scenario, TankScenario, stop_parts
 from slosh_cli.scenario.source import text_of
-from slosh_cli.scenario.yaml_text import OWN, dump, parse, parse_override
+from slosh_cli.scenario.yaml_text import dump, parse, parse_override
 
 R = TypeVar("R", bound=Root)
-
-_WAGON_PARTS: Final = ("wagon", "track", "contact", "braking")
 
 
 def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
@@ -33,7 +31,7 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     """
     document = _read(path, overrides)
     if _is_tank_alone(document.data):
-        rule = f"must describe a stop, with {', '.join(_WAGON_PARTS)} beside the tank"
+        rule = f"must describe a stop, with {', '.join(stop_parts())} beside the tank"
         fix = "add them, or use the file where a tank alone will do"
         document.add(Finding((), rule, "a tank alone", fix))
         _finish(TankScenario, document, str(path))
@@ -106,7 +104,7 @@ def _overridden(scenario: Root, parts: Collection[str], overrides: Mapping[str, 
 
 
 def _is_tank_alone(data: Any) -> bool:
-    return isinstance(data, dict) and "tank" in data and not any(part in data for part in _WAGON_PARTS)
+    return isinstance(data, dict) and "tank" in data and not any(part in data for part in stop_parts())
 
 
 def _finish(model: type[R], document: Document, file: str) -> R:

@@ -11,12 +11,12 @@ import yaml
 from slosh_cli.errors import Problem, ScenarioError
 from slosh_cli.scenario.document import Document, Origin, Path
 from slosh_cli.scenario.scalars import plain_scalar, well_formed
+from slosh_cli.scenario.schema import OWN
 from slosh_cli.scenario.units import plain
 
 MOST_VALUES: Final = 20_000
 """Values of a file, with its aliases written out; stops a few lines from unfolding into gigabytes."""
-OWN: Final = "x-"
-"""Top-level keys that begin so are the author's own, a place for anchors: nobody reads them."""
+
 
 _KNOWN_TAGS = {
     f"tag:yaml.org,2002:{name}"

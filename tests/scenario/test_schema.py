@@ -123,8 +123,10 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
     torque = schema["$defs"]["Braking"]["properties"]["torque"]
     assert (torque["type"], torque["x-unit"], torque["examples"]) == ("string", "N m", ["5 kN m"])
     assert schema["$defs"]["Braking"]["properties"]["stop_speed"]["default"] == "0.02 m/s"
-    assert schema["required"] == ["format", "name", "wagon", "tank", "track", "contact", "braking"]
-    assert {"shape", "bottom_height", "radius"} <= set(schema["$defs"]["HorizontalCylinder"]["required"])
+    assert schema["required"] == ["format", "name", "tank"]
+    assert schema["then"]["required"] == ["wagon", "track", "contact", "braking"]
+    assert schema["then"]["properties"]["tank"]["required"] == ["bottom_height"]
+    assert {"shape", "radius"} <= set(schema["$defs"]["HorizontalCylinder"]["required"])
     assert schema["$defs"]["Contact"]["properties"]["adhesion"]["oneOf"][0] == {"enum": ["dry", "wet"]}
     assert all(not definition["additionalProperties"] for definition in schema["$defs"].values())
 
