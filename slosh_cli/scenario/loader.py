@@ -14,6 +14,7 @@ from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.leaves import FROM_TEXT
+from slosh_cli.scenario.packaged import packaged_scenarios
 from slosh_cli.scenario.plain_data import plain_data, si_values, unfold_adhesion
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema import OWN, Root, Scenario, TankScenario, stop_parts
@@ -24,7 +25,7 @@ R = TypeVar("R", bound=Root)
 
 
 def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
-    """Read the scenario of a stop.
+    """Read the scenario of a stop, from a file or, by its name where no such file exists, from the packaged ones.
 
     `overrides` are texts ``key.path=VALUE`` with VALUE in YAML; all are applied, in order, before anything
     is checked. Raises ScenarioError, which lists every mistake of the file and of the overrides.
@@ -119,8 +120,15 @@ def _finish(model: type[R], document: Document, file: str) -> R:
     return scenario
 
 
+def _source(path: str | Path) -> Path:
+    """The file itself; or the packaged scenario of that name, ``paper-80-liquid``, where there is no such file."""
+    file = Path(path)
+    is_name = file.name == str(path) and not file.suffix
+    return packaged_scenarios().get(file.name, file) if is_name and not file.exists() else file
+
+
 def _read(path: str | Path, overrides: Iterable[str]) -> Document:
-    document = parse(text_of(Path(path)), str(path))
+    document = parse(text_of(_source(path)), str(path))
     for override in overrides:
         key, equals, value = override.partition("=")
         key = key.strip()

@@ -96,6 +96,13 @@ def test_schema_is_a_json_schema_of_the_scenario(slosh: Slosh) -> None:
     assert {"wagon", "tank", "track", "contact", "braking"} <= set(schema["properties"])
 
 
+def test_schema_of_a_study(slosh: Slosh) -> None:
+    schema = json.loads(slosh("schema", "study").out)
+    assert set(schema["properties"]) == {"name", "description", "base", "vary", "liquid"}
+    assert {"tank.fill", "braking.torque", "contact.adhesion"} <= set(schema["properties"]["vary"]["properties"])
+    assert json.loads(slosh("schema", "scenario").out) == json.loads(slosh("schema").out)
+
+
 def test_plot_draws_beside_the_history(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
     slosh("run", PAPER, "-o", "here", "--no-figures")
     outcome = slosh("plot", "here/run.h5")
