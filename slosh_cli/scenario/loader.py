@@ -17,6 +17,7 @@ from slosh_cli.scenario.leaves import FROM_TEXT
 from slosh_cli.scenario.packaged import packaged_scenarios
 from slosh_cli.scenario.plain_data import plain_data, si_values, unfold_adhesion
 from slosh_cli.scenario.rules import Finding
+from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.schema import OWN, Root, Scenario, TankScenario, stop_parts
 from slosh_cli.scenario.source import text_of
 from slosh_cli.scenario.yaml_text import dump, parse, parse_override
@@ -96,6 +97,8 @@ def _overridden(scenario: Root, parts: Collection[str], overrides: Mapping[str, 
     plain = {name: plain_data(part, as_text=False) for name, part in values if isinstance(part, Part) and name in parts}
     document = Document({**vars(scenario), **plain}, {(): Origin()})
     for key, value in overrides.items():
+        if not _is_writable(document, key, key):
+            continue
         if isinstance(value, str) and key not in ("name", "description"):
             _override(document, key, value, key)
         else:
@@ -132,7 +135,7 @@ def _read(path: str | Path, overrides: Iterable[str]) -> Document:
     for override in overrides:
         key, equals, value = override.partition("=")
         key = key.strip()
-        if equals and key.startswith(OWN):
+        if not _is_writable(document, key, f"--set {key}") or (equals and key.startswith(OWN)):
             continue
         if equals and all(key.split(".")):
             _override(document, key, value, f"--set {key}")
@@ -142,6 +145,18 @@ def _read(path: str | Path, overrides: Iterable[str]) -> Document:
         document.overrides.append(f"--set {override}")
         document.problems.append(Problem(None, "", rule, f"`{override}`", fix, f"--set {override}"))
     return document
+
+
+def _is_writable(document: Document, key: str, place: str) -> bool:
+    """Whether a file could hold the key of an override; a problem where it could not."""
+    spelt, lone = well_formed(key)
+    if lone:
+        document.overrides.append(place)
+        fix = "write the key in UTF-8"
+        document.problems.append(
+            Problem(None, spelt, "must be text that can be written as UTF-8", f"`{lone}`", fix, place)
+        )
+    return not lone
 
 
 def _override(document: Document, key: str, text: str, place: str) -> None:

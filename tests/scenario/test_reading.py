@@ -150,10 +150,18 @@ def test_half_a_character_is_refused_with_its_line(old: str, new: str, line: int
 def test_half_a_character_in_an_override(tmp_path: Path) -> None:
     file = tmp_path / "a.yaml"
     file.write_text(BASE, encoding="utf-8")
-    for text in ("description=\udcff", 'description="\\ud800"', "tank.fill=\udcff", "tank.liquid={model: \udcff}"):
+    for text in (
+        "\udcff=1",
+        "tank.\udcff=1",
+        "x-\udcff=1",
+        "description=\udcff",
+        'description="\\ud800"',
+        "tank.fill=\udcff",
+        "tank.liquid={model: \udcff}",
+    ):
         with pytest.raises(ScenarioError, match=WRITABLE):
             load_scenario(file, [text])
-    for key in ("name", "description"):
+    for key in ("name", "description", "tank.\udcff", "\udcff"):
         with pytest.raises(ScenarioError, match=WRITABLE) as caught:
             replace(SOUND, {key: "a\udcff"})
         str(caught.value).encode("utf-8")
