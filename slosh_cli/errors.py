@@ -8,7 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
+
+MOST_SHOWN: Final = 20
+"""Problems that a message spells out; of the others it gives the number."""
+_LONGEST: Final = 400
+"""Letters of one piece of a message; more is somebody's file, not a message."""
 
 
 class SloshError(Exception):
@@ -69,14 +74,18 @@ class Problem:
     def where(self, file: str) -> str:
         """The place in one word: the override, ``file:line`` or the bare file."""
         if self.override:
-            return _printable(self.override)
+            return _printable(_short(self.override))
         return file if self.line is None else f"{file}:{self.line}"
 
     def text(self, file: str) -> str:
         """The whole message on one line, ``where: key.path: rule; given ...; what to write``."""
-        key = "" if self.override.endswith(self.key) else self.key
-        parts = [self.where(file), key, f"{self.rule}; given {self.given}; {self.fix}"]
+        key = "" if self.override.endswith(self.key) else _short(self.key)
+        parts = [self.where(file), key, f"{_short(self.rule)}; given {_short(self.given)}; {_short(self.fix)}"]
         return _printable(": ".join(part for part in parts if part))
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
 def _printable(text: str) -> str:
@@ -85,18 +94,26 @@ def _printable(text: str) -> str:
 
 
 class ScenarioError(SloshError):
-    """A scenario cannot be used; `problems` lists everything that is wrong with it, not only the first."""
+    """A scenario, study or table cannot be used.
+
+    `problems` lists what is wrong with it, not only the first mistake; `more` counts those left out of it. The message
+    spells the first ones out.
+    """
 
     code: ClassVar[str] = "scenario"
 
-    def __init__(self, file: str, problems: Iterable[Problem]) -> None:
+    def __init__(self, file: str, problems: Iterable[Problem], more: int = 0) -> None:
         self.file = file
         self.problems = tuple(problems)
-        text = "\n".join(problem.text(file) for problem in self.problems)
-        super().__init__(text, self.problems[0].where(file) if self.problems else file)
+        self.more = more
+        lines = [problem.text(file) for problem in self.problems[:MOST_SHOWN]]
+        rest = len(self.problems) - len(lines) + more
+        if rest:
+            lines.append(f"and {rest:,} more {'problem' if rest == 1 else 'problems'}")
+        super().__init__("\n".join(lines), self.problems[0].where(file) if self.problems else file)
 
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-        return type(self), (self.file, self.problems)
+        return type(self), (self.file, self.problems, self.more)
 
 
 class PhysicsError(SloshError):

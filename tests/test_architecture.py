@@ -28,7 +28,7 @@ ORDER = [
 RANK = {name: rank for rank, names in enumerate(ORDER) for name in names}
 
 ONE_HOME = {
-    "yaml": "scenario/loader.py",
+    "yaml": "scenario/yaml_text.py",
     "h5py": "results/hdf5.py",
     "matplotlib": "report/",
     "pint": "scenario/conversion.py",

@@ -1,4 +1,7 @@
-"""`slosh schema`: the JSON Schema of a scenario, for editors."""
+"""`slosh schema`: the JSON Schemas of the files that people write, for editors."""
+
+from enum import StrEnum
+from typing import Annotated
 
 import typer
 
@@ -6,16 +9,33 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import say_json
 
 
+class FileKind(StrEnum):
+    """What a file describes."""
+
+    SCENARIO = "scenario"
+    STUDY = "study"
+
+
 def register(app: typer.Typer) -> None:
     """Add the command to the tree."""
     app.command("schema")(schema)
 
 
-def schema() -> ExitCode:
-    """Print the JSON Schema of a scenario.
+def schema(
+    kind: Annotated[
+        FileKind,
+        typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone) or `study`."),
+    ] = FileKind.SCENARIO,
+) -> ExitCode:
+    """Print the JSON Schema of a scenario, or of a study.
 
-    An editor that knows it completes and checks scenarios while they are written.
+    An editor that knows it completes and checks files while they are written.
     """
+    if kind is FileKind.STUDY:
+        from slosh_cli.study.study_schema import study_schema
+
+        say_json(study_schema())
+        return ExitCode.DONE
     from slosh_cli.scenario import json_schema
 
     say_json(json_schema())

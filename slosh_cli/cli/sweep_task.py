@@ -132,15 +132,16 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
     """Write the table and the figures, and tell what came out."""
     from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study
     from slosh_cli.results.result import Status
+    from slosh_cli.results.tables import write_rows
     from slosh_cli.study.runner import answer
-    from slosh_cli.study.table import TABLE, columns, rows, write_study_table
+    from slosh_cli.study.table import TABLE, columns, rows
 
     study, table = task.study, task.folder / TABLE
 
     def found() -> Iterator[dict[str, Any]]:
         return rows(study, lambda index: answer(study, planned, journal, index))
 
-    written = write_study_table(columns(study, found()), found(), table)
+    written = write_rows(columns(study, found()), found(), table)
     if interrupted:
         again = "the command without --fresh" if task.fresh else "the same command"
         note(f"{written} of {study.size} stops are finished and kept in {task.folder}; {again} goes on from there.")

@@ -1,7 +1,5 @@
 """What `slosh tank excite` reads, computes, prints and writes."""
 
-import csv
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +13,7 @@ from slosh_cli.scenario import parse_quantity
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
+    from slosh_cli.scenario.csv_table import Table
     from slosh_cli.solver.excite import Deceleration, Excitation
 
 TABLE: Final = "excite.csv"
@@ -101,7 +100,7 @@ def _deceleration(wishes: Wishes, duration: float) -> "Deceleration":
     if wishes.table is not None:
         if wishes.ramp is not None:
             raise UsageError("--ramp goes with --deceleration; a table has its own course", "--ramp")
-        found = Deceleration.table(read_table(wishes.table))
+        found = Deceleration.table(read_course(wishes.table))
         where = str(wishes.table)
     else:
         level = _quantity(wishes.deceleration, "acceleration", "--deceleration")
@@ -116,41 +115,20 @@ def _deceleration(wishes: Wishes, duration: float) -> "Deceleration":
     return found
 
 
-def read_table(file: Path) -> list[tuple[float, float]]:
-    """Rows (s, m/s^2) of a CSV file with columns time_s and deceleration_m_s2; lines that begin with # are skipped.
+def read_course(file: Path) -> list[tuple[float, float]]:
+    """Rows (s, m/s^2) of a CSV file with the columns of COLUMNS; raises ScenarioError with file and line."""
+    from slosh_cli.scenario.csv_table import read_table
 
-    Raises UsageError with file and line.
-    """
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise UsageError(f"cannot read {file}: {reason}", str(file)) from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
-    cells = [[cell.strip() for cell in row] for row in csv.reader(line for _, line in lines)]
-    if not cells or not set(COLUMNS) <= set(cells[0]):
-        found = ", ".join(cells[0]) if cells else "nothing"
-        raise UsageError(f"{file}: must have the columns {COLUMNS[0]} and {COLUMNS[1]}; given {found}", str(file))
-    places = [cells[0].index(column) for column in COLUMNS]
-    points: list[tuple[float, float]] = []
-    for (number, _), row in zip(lines[1:], cells[1:], strict=True):
-        try:
-            time, value = (float(row[place]) for place in places)
-        except (ValueError, IndexError):
-            time = value = math.nan
-        if not (math.isfinite(time) and math.isfinite(value)):
-            raise UsageError(
-                f"{file}:{number}: must hold two finite numbers; given `{','.join(row)}`", f"{file}:{number}"
-            )
-        if points and time < points[-1][0]:
-            raise UsageError(
-                f"{file}:{number}: times must not fall; {time:g} s follows {points[-1][0]:g} s", f"{file}:{number}"
-            )
-        points.append((time, value))
-    if not points:
-        raise UsageError(f"{file}: must hold at least one row of numbers below its head", str(file))
-    return points
+    table = read_table(file, COLUMNS, _times_do_not_fall)
+    return list(zip(*(table.columns[column] for column in COLUMNS), strict=True))
+
+
+def _times_do_not_fall(table: "Table") -> None:
+    times = table.columns[COLUMNS[0]]
+    for line, before, time in zip(table.lines[1:], times, times[1:], strict=False):
+        if time < before:
+            given = f"{time:g} s after {before:g} s"
+            table.refuse(line, COLUMNS[0], "must not fall from row to row", given, "sort the rows by time")
 
 
 def _quantity(text: str | None, dimension: str, option: str) -> float:

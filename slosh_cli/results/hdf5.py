@@ -3,7 +3,7 @@
 import json
 import platform
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any, Final
 import h5py
 import numpy as np
 
-from slosh_cli.results.channels import TIME, Channel, channel
+from slosh_cli.errors import MOST_SHOWN
+from slosh_cli.results.channels import TIME, Channel, channel, is_channel
 from slosh_cli.results.files import FileError, replacing
 from slosh_cli.results.result import PerWheel, Result, Status, Vector, frame
+from slosh_cli.results.stored import NEEDED, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -151,14 +153,36 @@ def read_history(path: Path) -> History:
     with _unreadable(path), h5py.File(path, "r") as file:
         attributes = {key: _plain(value) for key, value in file.attrs.items()}
         _check_format(path, attributes)
-        scenario_text = file[SCENARIO][()].decode("utf-8")
-        time = np.asarray(file[TIME.name][:], dtype=np.float64)
-        names = [name for name in file if name not in (TIME.name, SCENARIO)]
-        channels = {name: np.asarray(file[name][:], dtype=np.float64) for name in names}
-    for name, values in channels.items():
-        if values.shape != time.shape:
-            raise FileError(f"{path}: channel {name} is not as long as the time axis", where=str(path))
-    return History(time=time, channels=channels, attributes=attributes, scenario_text=scenario_text)
+        scenario_text = _text(path, file)
+        columns = _columns(path, file)
+    time = columns.pop(TIME.name)
+    _refuse(path, faults_of_columns(time, columns))
+    return History(time=time, channels=columns, attributes=attributes, scenario_text=scenario_text)
+
+
+def _columns(path: Path, file: h5py.File) -> dict[str, Vector]:
+    """The time axis and every channel that the file has; what else is in it is left alone."""
+    known = [name for name in file if name == TIME.name or is_channel(name)]
+    missing = [name for name in (TIME.name, *sorted(NEEDED)) if name not in known]
+    lacks = [f"it lacks the channels {', '.join(missing)}"] if missing else []
+    _refuse(path, [*lacks, *(fault for name in known for fault in faults_of_shape(name, file.get(name)))])
+    return {name: np.asarray(file[name][:], dtype=np.float64) for name in known}
+
+
+def _text(path: Path, file: h5py.File) -> str:
+    """The scenario of the run as resolved YAML."""
+    text = file[SCENARIO][()] if isinstance(file.get(SCENARIO), h5py.Dataset) else None
+    if not isinstance(text, bytes):
+        _refuse(path, [f"it lacks the text {SCENARIO}"])
+    return str(text, "utf-8") if isinstance(text, bytes) else ""
+
+
+def _refuse(path: Path, faults: Iterable[str]) -> None:
+    """Raise FileError with all faults of a history, where there are any."""
+    found = list(faults)
+    if found:
+        listed = "; ".join(found[:MOST_SHOWN]) + (f"; and {len(found) - MOST_SHOWN} more" * (len(found) > MOST_SHOWN))
+        raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
 
 
 def _write_channel(file: h5py.File, info: Channel, values: Vector) -> h5py.Dataset:
@@ -199,12 +223,6 @@ def _attributes(result: Result) -> dict[str, Any]:
     return {key: np.nan if value is None else value for key, value in every.items()}
 
 
-_NEEDED = (
-    "name", "status", "reason", "warnings", "initial_speed_m_s", "torque_N_m", "onset_s", "liquid_model",
-    "surface_limit_m", "braking_distance_m", "static_wheel_load_N",
-)  # fmt: skip
-
-
 def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
     found = attributes.get("format_version")
     if attributes.get("program") != "slosh" or found is None:
@@ -215,14 +233,13 @@ def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
             f"it was written by slosh {attributes.get('program_version', '?')}",
             where=str(path),
         )
-    missing = [key for key in _NEEDED if key not in attributes]
-    if missing:
-        raise FileError(f"{path} lacks the attributes {', '.join(missing)}", where=str(path))
+    _refuse(path, faults_of_attributes(attributes))
 
 
 def _plain(value: Any) -> Any:
     """A root attribute as a plain Python value where it is a single one."""
-    return value.item() if isinstance(value, np.generic) else value
+    value = value.item() if isinstance(value, np.generic) else value
+    return value.decode("utf-8") if isinstance(value, bytes) else value
 
 
 @contextmanager
@@ -233,5 +250,5 @@ def _unreadable(path: Path) -> Iterator[None]:
         raise FileError(f"{path} is a folder; give the history file in it, say {path / 'run.h5'}", where=str(path))
     try:
         yield
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise FileError(f"cannot read {path} as a slosh history (HDF5): {error}", where=str(path)) from error

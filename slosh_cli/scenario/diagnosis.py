@@ -5,15 +5,15 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cache
-from typing import Any, TypeVar
+from functools import cache, lru_cache
+from typing import Annotated, Any, Final, TypeVar
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
-from pydantic.fields import FieldInfo
+from pydantic import Field, TypeAdapter, ValidationError
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.alias import aliases_of, field_of, is_written, keys_of, with_fields
 from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.document import Path
 from slosh_cli.scenario.leaves import (
     FROM_TEXT,
     Choice,
@@ -30,13 +30,26 @@ from slosh_cli.scenario.leaves import (
 from slosh_cli.scenario.polygon import EXAMPLE
 from slosh_cli.scenario.rules import Finding, Values, broken_rules, values_of
 from slosh_cli.scenario.schema import Root
-from slosh_cli.scenario.schema_run import Adhesion
-from slosh_cli.scenario.schema_tank import SHAPES, Coefficient, Coefficients, TankBase
 from slosh_cli.scenario.split_numbers import rejoined
+from slosh_cli.scenario.tree import (
+    Spot,
+    data_path,
+    leaf_of,
+    part_at,
+    places_of,
+    spot_at,
+    spot_of,
+    unions,
+    value_at,
+)
 from slosh_cli.scenario.units import plain
 
 R = TypeVar("R", bound=Root)
-Path = tuple[str | int, ...]
+
+MOST_GUESSES: Final = 200
+"""Different unknown keys that are guessed at; the others are only named, because a guess takes its time."""
+LONGEST_GUESSED: Final = 60
+"""Letters of a key that is guessed at."""
 
 
 def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[Finding, ...]]:
@@ -44,11 +57,11 @@ def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[F
     try:
         return model.model_validate(data, context=FROM_TEXT), ()
     except ValidationError as error:
-        findings = [finding for entry in error.errors() for finding in _translate(model, data, entry)]
-    guessed = _with_guessed_shape(data)
+        findings = list(_translated(model, data, error.errors(include_url=False)))
+    guessed = _with_guessed_tags(model, data)
     if guessed is not None:
         findings += diagnose(model, guessed)[1]
-    findings = rejoined(findings, lambda path: _value_at(data, path), lambda path: _leaf_at(model, data, path))
+    findings = rejoined(findings, lambda path: value_at(data, path), lambda path: _leaf_at(model, data, path))
     findings += broken_rules(_valid_values(model, data), model.rules)
     return None, tuple(dict.fromkeys(_as_written(model, data, finding) for finding in _without_echoes(findings)))
 
@@ -56,23 +69,44 @@ def diagnose(model: type[R], data: Mapping[str, Any]) -> tuple[R | None, tuple[F
 def _as_written(model: type[Root], data: Mapping[str, Any], finding: Finding) -> Finding:
     """A finding about a field at the key that the field was written under."""
     above = finding.path[:-1]
-    given = _value_at(data, above)
+    given = value_at(data, above)
     for alias in aliases_of(part_at(model, data, above)) if isinstance(given, dict) else ():
         if finding.path[-1] == alias.field and alias.field not in given and alias.key in given:
             return replace(finding, path=(*above, alias.key))
     return finding
 
 
-def _with_guessed_shape(data: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The data with the shape of tank that was probably meant, so that the other keys can be judged."""
-    tank = data.get("tank")
-    if not isinstance(tank, dict) or (isinstance(tank.get("shape"), str) and tank["shape"] in SHAPES):
-        return None
-    shape = guess(tank.get("shape", ""), tuple(SHAPES)).strip("`")
-    if not shape:
-        telling = {"radius": "horizontal-cylinder", "diameter": "horizontal-cylinder", "points": "polygon"}
-        shape = next((telling[key] for key in telling if key in tank), "")
-    return {**data, "tank": {**tank, "shape": shape}} if shape else None
+def _leaf_at(model: type[Part], data: Any, path: Path) -> Leaf | None:
+    """The leaf of the field at `path`, None where there is none."""
+    part = part_at(model, data, path[:-1])
+    return leaf_of(part.model_fields[str(path[-1])]) if part and path[-1] in part.model_fields else None
+
+
+def _with_guessed_tags(model: type[Root], data: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The data with the shape of tank, say, that was probably meant, so that the other keys can be judged."""
+    guessed: dict[str, Any] | None = None
+    for path, spot in unions(model):
+        value = value_at(data, path)
+        if not isinstance(value, dict) or spot.chosen(value) is not None:
+            continue
+        tag = guess(value.get(spot.key, ""), tuple(spot.parts)).strip("`") or _telling_tag(spot, value)
+        if tag:
+            guessed = _replaced(guessed or dict(data), path, {**value, spot.key: tag})
+    return guessed
+
+
+def _telling_tag(spot: Spot, value: Mapping[str, Any]) -> str:
+    """The one branch of a union that knows a key of `value` which no other has."""
+    for name in value:
+        owners = [tag for tag, part in spot.parts.items() if name in keys_of(part)]
+        if len(owners) == 1:
+            return owners[0]
+    return ""
+
+
+def _replaced(data: Mapping[str, Any], path: Path, value: Any) -> dict[str, Any]:
+    step, *rest = path
+    return {**data, str(step): _replaced(data[str(step)], tuple(rest), value) if rest else value}
 
 
 def dotted(path: Path) -> str:
@@ -86,182 +120,150 @@ def _without_echoes(findings: list[Finding]) -> list[Finding]:
     return [finding for finding in findings if finding.given != "nothing" or finding.path not in guessed]
 
 
-def _translate(model: type[Root], data: Mapping[str, Any], entry: Any) -> Iterator[Finding]:
-    """One error of pydantic in the words of this program."""
-    path, kind, context = _data_path(entry["loc"]), entry["type"], entry.get("ctx", {})
-    if kind == "rules":
-        yield from context["findings"]
-    elif kind == "refused":
-        yield Finding(path, context["rule"], context["given"], context["fix"])
-    elif kind == "missing":
-        parent = part_at(model, data, path[:-1])
-        yield Finding(path, "is required", "nothing", _how_to_write(str(path[-1]), parent))
-    elif kind == "extra_forbidden":
-        yield _unknown_key(model, data, path)
-    elif kind in ("union_tag_invalid", "union_tag_not_found") or path == ("tank",):
-        yield _wrong_shape_of_tank(path, entry["input"])
-    else:
-        yield _not_a_mapping(path, entry["input"], part_at(model, data, path))
+def _translated(model: type[Root], data: Mapping[str, Any], entries: Iterable[Any]) -> Iterator[Finding]:
+    """Pydantic's errors in the words of this program."""
+    guessed: set[str] = set()
+    for entry in entries:
+        path, kind, context = data_path(model, data, entry["loc"]), entry["type"], entry.get("ctx", {})
+        if kind == "rules":
+            yield from context["findings"]
+        elif kind == "refused":
+            yield Finding(path, context["rule"], context["given"], context["fix"])
+        elif kind == "missing":
+            parent = part_at(model, data, path[:-1])
+            yield Finding(path, "is required", "nothing", _how_to_write(str(path[-1]), parent))
+        elif kind == "extra_forbidden":
+            guessed.add(str(path[-1]))
+            yield _UnknownKey(model, data, path).finding(guessing=len(guessed) <= MOST_GUESSES)
+        else:
+            yield _wrong_form(path, entry["input"], spot_at(model, data, path))
 
 
-def _data_path(location: tuple[str | int, ...]) -> Path:
-    """Pydantic's location without the names of union branches, which are no keys of the file."""
-    path = list(location)
-    if len(path) > 1 and path[0] == "tank":
-        del path[1]
-    if len(path) > 2 and path[:2] == ["tank", "coefficients"] and path[2] in ("given", "computed"):
-        del path[2]
-    return tuple(path)
+def _wrong_form(path: Path, given: Any, spot: Spot | None) -> Finding:
+    """A word where there should be a mapping, a mapping for a list, a union without its tag."""
+    if spot is not None and spot.key:
+        return _wrong_branch(path, given, spot)
+    chosen = spot.chosen(given) if spot else None
+    if chosen is not None and chosen.part is not None:
+        rule = f"must be a mapping with the keys {_listed(keys_of(chosen.part))}"
+        item = isinstance(path[-1], int)
+        fix = f"write the item as `{_sketch(chosen.part)}`" if item else f"write these keys under `{path[-1]}:`"
+        return Finding(path, rule, plain(given), fix)
+    if chosen is not None and chosen.items is not None:
+        part = chosen.items.part
+        return Finding(
+            path, "must be a list", plain(given), f"write each item as `- {_sketch(part) if part else '...'}`"
+        )
+    return Finding(path, "must have another form", plain(given), "see `slosh schema` for the form")
 
 
-def _wrong_shape_of_tank(path: Path, given: Any) -> Finding:
+def _wrong_branch(path: Path, given: Any, spot: Spot) -> Finding:
+    tags, key = tuple(spot.parts), spot.key
     if not isinstance(given, dict):
-        fix = "write the tank's keys under it, each on its own line, such as `shape: horizontal-cylinder`"
+        fix = f"write the {path[-1]}'s keys under it, each on its own line, such as `{key}: {tags[0]}`"
         return Finding(path, "must be a mapping", plain(given), fix)
-    if "shape" not in given:
-        listed = one_of([f"shape: {shape}" for shape in SHAPES])
-        return Finding((*path, "shape"), "is required", "nothing", f"write {listed}")
-    refused = not_an_option(given["shape"], tuple(SHAPES))
-    return Finding((*path, "shape"), refused.rule, refused.given, refused.fix)
+    if key not in given:
+        return Finding((*path, key), "is required", "nothing", f"write {one_of([f'{key}: {tag}' for tag in tags])}")
+    refused = not_an_option(given[key], tags)
+    return Finding((*path, key), refused.rule, refused.given, refused.fix)
 
 
-def _not_a_mapping(path: Path, given: Any, part: type[Part] | None) -> Finding:
+def _sketch(part: type[Part] | None) -> str:
+    """The keys that a mapping must have, as it is written on one line."""
     if part is None:
-        return Finding(path, "must have another form", plain(given), "see `slosh schema` for the form")
-    keys = _listed(keys_of(part))
-    return Finding(
-        path, f"must be a mapping with the keys {keys}", plain(given), f"write these keys under `{path[-1]}:`"
-    )
+        return "..."
+    needed = [name for name, field in part.model_fields.items() if field.is_required()]
+    return f"{{{', '.join(f'{name}: ...' for name in needed)}}}"
 
 
-def _listed(names: Any) -> str:
+def _listed(names: Iterable[str]) -> str:
     names = list(names)
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def _unknown_key(model: type[Root], data: Mapping[str, Any], path: Path) -> Finding:
-    """A key that is not in the schema, with a guess: another place for it, a similar key, another shape."""
-    part, name = part_at(model, data, path[:-1]), str(path[-1])
-    fields = keys_of(part) if part else ()
-    both = next((alias for alias in aliases_of(part) if alias.key == name), None)
-    if both is not None:
-        return Finding(path, f"must not be given beside `{both.field}`", "both", "keep one of them")
-    rule = f"is not a key of `{dotted(path[:-1])}`" if len(path) > 1 else "is not a key of a scenario"
-    owners = [shape for shape, tank in SHAPES.items() if name in keys_of(tank)]
-    given, fix = f"`{name}`", f"take it out; the keys here are {_listed(fields)}"
-    if part is not None and part in SHAPES.values():
-        rule = f"is not a key of a tank of shape {_shape_of(part)}"
-        given += f", which belongs to shape {' or '.join(owners)}" if owners else ""
-    parent = _value_at(data, path[:-1])
-    absent = {key.lower(): key for key in fields if not isinstance(parent, dict) or not is_written(part, key, parent)}
-    near = _similar(name, absent)
-    places = sorted(_places_of(model, name), key=lambda place: place[: len(path) - 1] != path[:-1])
-    elsewhere = [place for place in places if _value_at(data, place) is None]
-    if elsewhere:
-        return Finding(path, rule, given, f"move it to `{dotted(elsewhere[0])}`", _field(model, data, elsewhere[0]))
-    if near:
-        guessed = (*path[:-1], absent[near[0]])
-        return Finding(path, rule, given, f"write `{absent[near[0]]}`", _field(model, data, guessed))
-    taken = _similar(name, fields)
-    if taken:
-        fix = f"write `{taken[0]}`, which is there already, or take it out"
-    elif places:
-        fix = f"take it out, or did you mean `{dotted(places[0])}`?"
-    return Finding(path, rule, given, fix)
+class _UnknownKey:
+    """A key that is not in the schema, with a guess: another place for it, a similar key, another branch of a union."""
+
+    def __init__(self, model: type[Root], data: Mapping[str, Any], path: Path) -> None:
+        self.model, self.data, self.path = model, data, path
+        self.name = str(path[-1])
+        self.above = path[:-1]
+        self.part = part_at(model, data, self.above)
+        self.fields = keys_of(self.part) if self.part else ()
+
+    def finding(self, *, guessing: bool) -> Finding:
+        both = next((alias for alias in aliases_of(self.part) if alias.key == self.name), None)
+        if both is not None:
+            return Finding(self.path, f"must not be given beside `{both.field}`", "both", "keep one of them")
+        rule, given = self._rule_and_given()
+        if not guessing or len(self.name) > LONGEST_GUESSED:
+            return Finding(self.path, rule, given, "take it out")
+        fix, meant = self._fix_and_meant()
+        return Finding(self.path, rule, given, fix, self._field(meant))
+
+    def _field(self, path: Path) -> Path:
+        """The path of the field that a key stands for."""
+        return (*path[:-1], field_of(part_at(self.model, self.data, path[:-1]), str(path[-1]))) if path else ()
+
+    def _rule_and_given(self) -> tuple[str, str]:
+        given = plain(self.name)
+        if not self.above:
+            return "is not a key of a scenario", given
+        spot = spot_at(self.model, self.data, self.above)
+        if spot is None or not spot.parts:
+            return f"is not a key of `{dotted(self.above)}`", given
+        tag = value_at(self.data, (*self.above, spot.key))
+        owners = [tag for tag, part in spot.parts.items() if self.name in keys_of(part)]
+        if owners:
+            given += f", which belongs to {spot.key} {' or '.join(owners)}"
+        return f"is not a key of a {self.above[-1]} of {spot.key} {tag}", given
+
+    def _fix_and_meant(self) -> tuple[str, Path]:
+        """What to write, and the path of the key that was probably meant, where one was."""
+        parent = value_at(self.data, self.above)
+        known = parent if isinstance(parent, dict) else {}
+        absent = {key.lower(): key for key in self.fields if not is_written(self.part, key, known)}
+        near = _similar(self.name, tuple(absent))
+        depth = len(self.above)
+        places = sorted(places_of(self.model, self.name), key=lambda place: place[:depth] != self.above)
+        elsewhere = [place for place in places if value_at(self.data, place) is None]
+        if elsewhere:
+            return f"move it to `{dotted(elsewhere[0])}`", elsewhere[0]
+        if near:
+            return f"write `{absent[near[0]]}`", (*self.above, absent[near[0]])
+        taken = _similar(self.name, self.fields)
+        if taken:
+            return f"write `{taken[0]}`, which is there already, or take it out", ()
+        if places:
+            return f"take it out, or did you mean `{dotted(places[0])}`?", ()
+        return f"take it out; the keys here are {_listed(self.fields)}", ()
 
 
-def _field(model: type[Root], data: Mapping[str, Any], path: Path) -> Path:
-    """The path of the field that a key stands for."""
-    return (*path[:-1], field_of(part_at(model, data, path[:-1]), str(path[-1])))
-
-
-def _similar(name: str, keys: Iterable[str]) -> list[str]:
+@lru_cache(maxsize=2 * MOST_GUESSES)
+def _similar(name: str, keys: tuple[str, ...]) -> list[str]:
     """At most one of `keys`; short names may differ in half of their letters."""
     return difflib.get_close_matches(name.lower().replace("-", "_"), keys, 1, 0.5 if len(name) < 4 else 0.6)
-
-
-def _shape_of(part: type[BaseModel]) -> str:
-    return next(shape for shape, tank in SHAPES.items() if tank is part)
-
-
-def _value_at(data: Any, path: Path) -> Any:
-    for step in path:
-        try:
-            data = data[step]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return data
-
-
-def part_of(field: FieldInfo, value: Any = None) -> type[Part] | None:
-    """The class of a field that holds a mapping; for the tank it depends on the shape in `value`."""
-    annotation = field.annotation
-    if isinstance(annotation, type) and issubclass(annotation, Part):
-        return annotation
-    if field.discriminator == "shape":
-        shape = value.get("shape") if isinstance(value, dict) else None
-        return SHAPES.get(shape) if isinstance(shape, str) else None
-    return None
-
-
-def part_at(model: type[Part], data: Any, path: Path) -> type[Part] | None:
-    """The class of the mapping at `path`, None where the schema has no mapping there."""
-    part: type[Part] | None = model
-    for step in path:
-        data = _value_at(data, (step,))
-        if isinstance(step, int):
-            part = Coefficient
-            continue
-        if part is None or step not in part.model_fields:
-            return None
-        field = part.model_fields[step]
-        part = part_of(field, data)
-        if part is None and step == "coefficients":
-            part = Coefficient
-    return part
-
-
-def _places_of(model: type[Part], name: str, prefix: Path = ()) -> Iterator[Path]:
-    """Paths at which the schema knows `name`, single values only, dimensions of the tank left out."""
-    if prefix and name in keys_of(model) and (name not in model.model_fields or not part_of(model.model_fields[name])):
-        yield (*prefix, name)
-    for key, field in model.model_fields.items():
-        part = part_of(field) or (TankBase if key == "tank" else None)
-        if part is not None:
-            yield from _places_of(part, name, (*prefix, key))
-
-
-def _leaf_at(model: type[Part], data: Any, path: Path) -> Leaf | None:
-    """The leaf of the field at `path`, None where there is none."""
-    part = part_at(model, data, path[:-1])
-    return leaf_of(part.model_fields[str(path[-1])]) if part and path[-1] in part.model_fields else None
-
-
-@cache
-def leaves_of(model: type[Part]) -> tuple[tuple[str, Leaf | None], ...]:
-    """Name and leaf of every field of a part; see `leaf_of`."""
-    return tuple((name, leaf_of(field)) for name, field in model.model_fields.items())
-
-
-def leaf_of(field: FieldInfo) -> Leaf | None:
-    """The leaf in a field's annotation, None for mappings and lists of mappings."""
-    return next((entry for entry in field.metadata if isinstance(entry, Leaf)), None)
 
 
 def _how_to_write(name: str, parent: type[Part] | None) -> str:
     if parent is None or name not in parent.model_fields:
         return f"write `{name}: ...`"
     field = parent.model_fields[name]
-    leaf, part = leaf_of(field), part_of(field)
+    leaf, spot = leaf_of(field), spot_of(parent, name)
     second = next((f" or `{alias.key}: {alias.example}`" for alias in aliases_of(parent) if alias.field == name), "")
-    if isinstance(leaf, Version):
-        return f"write `{name}: {leaf.supported}`"
     if leaf is not None:
-        return f"write it, such as `{name}: {_example(leaf)}`{second}"
-    if name == "adhesion":
-        return "write `adhesion: dry`, `adhesion: wet` or a coefficient of friction, such as `adhesion: 0.15`"
-    keys = _listed(keys_of(part)) if part else "shape, its dimensions, length, fill, bottom_height and liquid"
-    return f"write `{name}:` with the keys {keys} under it"
+        such_as = "" if isinstance(leaf, Version) else "it, such as "
+        return f"write {such_as}`{name}: {_example(leaf)}`{second}"
+    if field.examples:
+        return f"write it, such as {one_of([f'{name}: {example}' for example in field.examples])}"
+    if spot.parts:
+        shared = [key for key in spot.shared if key != spot.key]
+        first = next(iter(spot.parts.values()))
+        needed = [key for key in shared if first.model_fields[key].is_required()]
+        return f"write `{name}:` with the keys {spot.key}, {_listed(needed)} and those of its {spot.key} under it"
+    if spot.items is not None:
+        return f"write `{name}:` with items such as `- {_sketch(spot.items.part)}` under it"
+    return f"write `{name}:` with the keys {_listed(keys_of(spot.part)) if spot.part else '...'} under it"
 
 
 def _example(leaf: Leaf) -> str:
@@ -289,32 +291,40 @@ def _valid_values(model: type[Part], data: Any, prefix: str = "") -> Values:
         key = prefix + name
         if name in data:
             explicit.add(key)
-            found = _valid_value(field, data[name], key)
+            found = _valid_value(model, name, data[name], key)
         elif field.is_required():
             continue
         else:
-            default = field.get_default()
-            found = values_of(default, f"{key}.") if isinstance(default, Part) else Values({key: default}, frozenset())
+            found = _value(field.get_default(), key)
         values.update(found.values)
         explicit |= found.explicit
     return Values(values, frozenset(explicit))
 
 
-def _valid_value(field: FieldInfo, value: Any, key: str) -> Values:
-    nothing: frozenset[str] = frozenset()
-    leaf, part = leaf_of(field), part_of(field, value)
+def _value(value: Any, key: str) -> Values:
+    """A valid value, of a part all that is in it."""
+    return values_of(value, f"{key}.") if isinstance(value, Part) else Values({key: value}, frozenset())
+
+
+def _valid_value(model: type[Part], name: str, value: Any, key: str) -> Values:
+    field = model.model_fields[name]
+    leaf, chosen = leaf_of(field), spot_of(model, name).chosen(value)
+    part = chosen.part if chosen else None
     try:
         if leaf is not None:
-            return Values({key: leaf.parse(value)}, nothing)
-        if key.endswith(".coefficients"):
-            return Values({key: _COEFFICIENTS.validate_python(value, context=FROM_TEXT)}, nothing)
+            return Values({key: leaf.parse(value)}, frozenset())
+        if part is not None and isinstance(value, dict):
+            return _valid_values(part, value, f"{key}.")
+        return _value(_adapter(model, name).validate_python(value, context=FROM_TEXT), key)
     except (ValueRefused, ValidationError):
-        return Values({}, nothing)
-    if key.endswith(".shape"):
-        return Values({key: value}, nothing)
-    if isinstance(value, Adhesion) or part is None or not isinstance(value, dict):
-        return Values({}, nothing)
-    return _valid_values(part, value, f"{key}.")
+        return Values({}, frozenset())
 
 
-_COEFFICIENTS: TypeAdapter[Any] = TypeAdapter(Coefficients)
+@cache
+def _adapter(model: type[Part], name: str) -> TypeAdapter[Any]:
+    """What validates a single field of a part."""
+    field = model.model_fields[name]
+    by_key = [Field(discriminator=field.discriminator)] if isinstance(field.discriminator, str) else []
+    notes = (*field.metadata, *by_key)
+    kind: Any = Annotated[field.annotation, *notes] if notes else field.annotation
+    return TypeAdapter(kind)

@@ -73,8 +73,9 @@ class Document:
         last = int(path[-1]) if isinstance(parent, list) else path[-1]
         parent[last] = value
         place = self.normal(path)
-        for known in [known for known in self.origins if known[: len(place)] == place]:
-            del self.origins[known]
+        if place in self.origins:  # and with it the places below
+            for known in [known for known in self.origins if known[: len(place)] == place]:
+                del self.origins[known]
         self.origins[place] = Origin(override=override)
 
     def remove(self, path: Path) -> None:

@@ -12,11 +12,11 @@ from typing import Any, Final, TypeVar
 from pydantic import ValidationError
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario.diagnosis import leaves_of
 from slosh_cli.scenario.document import Document, Path
 from slosh_cli.scenario.leaves import FROM_TEXT, Quantity
 from slosh_cli.scenario.schema import Scenario, TankScenario
 from slosh_cli.scenario.schema_tank import TankBase
+from slosh_cli.scenario.tree import leaves_of
 from slosh_cli.scenario.units import plain, shown
 
 R = TypeVar("R", Scenario, TankScenario)

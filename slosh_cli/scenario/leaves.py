@@ -20,6 +20,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.units import (
     DIMENSIONS,
     at_least,
@@ -332,6 +333,9 @@ class Text(Leaf):
             raise ValueRefused(rule, plain(value), fix)
         if len(value) > self.longest:
             raise ValueRefused(rule, f"{len(value)} characters", "shorten it")
+        lone = well_formed(value)[1]
+        if lone:
+            raise ValueRefused("must be text that can be written as UTF-8", f"`{lone}` in it", "write it in UTF-8")
         if self.pattern and not re.fullmatch(self.pattern, value):
             better = self.repair(value) if self.repair else ""
             raise ValueRefused(rule, plain(value), f"write `{better}`" if better else "write a name such as `stop-1`")

@@ -8,9 +8,9 @@ from typing import Any
 from pydantic_core import PydanticCustomError
 
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.diagnosis import leaves_of
 from slosh_cli.scenario.leaves import Quantity, SIValue
 from slosh_cli.scenario.schema_run import named_adhesion
+from slosh_cli.scenario.tree import leaves_of
 
 
 def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:

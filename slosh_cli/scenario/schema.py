@@ -1,6 +1,6 @@
 """A whole scenario: a tank wagon on a track and its stop, or a tank alone."""
 
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Final, Self
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -11,6 +11,10 @@ from slosh_cli.scenario.rules import SCENARIO_RULES, TANK_RULES, Rule, broken_ru
 from slosh_cli.scenario.schema_run import ADHESIONS, Braking, Contact, Output, Solver, Track
 from slosh_cli.scenario.schema_tank import SHAPES, Tank
 from slosh_cli.scenario.schema_wagon import Wagon
+
+DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+OWN: Final = "x-"
+"""Top-level keys that begin so are the author's own, a place for anchors: nobody reads them."""
 
 
 class Root(Part):
@@ -55,14 +59,21 @@ class Scenario(Root):
     output: Output = Field(default=Output.model_construct(), description="What is written.")
 
 
+def stop_parts() -> tuple[str, ...]:
+    """The keys that a stop needs beside its tank; a file with none of them describes a tank alone."""
+    fields = Scenario.model_fields.items()
+    return tuple(name for name, field in fields if field.is_required() and name not in TankScenario.model_fields)
+
+
 def json_schema() -> dict[str, Any]:
-    """JSON Schema of a scenario file, for editors. Quantities are texts with a unit."""
+    """JSON Schema of a scenario file, of a stop or of a tank alone, for editors. Quantities are texts with a unit."""
     schema = Scenario.model_json_schema()
     definitions = schema["$defs"]
     for shape in SHAPES.values():
         tank = definitions[shape.__name__]
-        tank["required"] = ["shape", *tank["required"], "bottom_height"]
-        tank["properties"]["bottom_height"].pop("default")
+        tank["required"] = ["shape", *tank["required"]]
+        given = next(form for form in tank["properties"]["coefficients"]["oneOf"] if form["type"] == "array")
+        given["minItems"] = 1
     contact = definitions["Contact"]["properties"]
     own = {"$ref": contact["adhesion"]["$ref"]}
     mu0 = {"anyOf": definitions["Adhesion"]["properties"]["mu0"]["anyOf"]}
@@ -75,4 +86,16 @@ def json_schema() -> dict[str, Any]:
                 entry["default"] = f"{entry['default']} {entry['x-unit']}"
             elif isinstance(entry.get("default"), dict):
                 del entry["default"]
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    return {"$schema": DIALECT, **schema, **_by_kind(schema), "patternProperties": {f"^{OWN}": True}}
+
+
+def _by_kind(schema: dict[str, Any]) -> dict[str, Any]:
+    """What is required of a stop, and what a tank alone has not."""
+    parts = stop_parts()
+    alone = [name for name in Scenario.model_fields if name not in TankScenario.model_fields and name not in parts]
+    return {
+        "required": [name for name in schema["required"] if name not in parts],
+        "if": {"anyOf": [{"required": [part]} for part in parts]},
+        "then": {"required": list(parts), "properties": {"tank": {"required": ["bottom_height"]}}},
+        "else": {"properties": dict.fromkeys(alone, False)},
+    }

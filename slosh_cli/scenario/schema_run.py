@@ -137,7 +137,8 @@ class Contact(Part):
         description="Kalker's longitudinal creep coefficient."
     )
     adhesion: Annotated[Adhesion, BeforeValidator(named_adhesion)] = Field(
-        description="`dry`, `wet`, a coefficient of plain Coulomb friction, or Polach's parameters in a mapping."
+        description="`dry`, `wet`, a coefficient of plain Coulomb friction, or Polach's parameters in a mapping.",
+        examples=["dry", "wet", "0.15"],
     )
     stiffness: Annotated[float | None, Quantity("contact_stiffness", Range(1e7, 1e15), "9.4e10 N/m^1.5")] = Field(
         default=None,

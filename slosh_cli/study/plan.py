@@ -82,7 +82,8 @@ class Study:
         try:
             scenario = replace(self.base, values)
         except ScenarioError as error:
-            raise type(error)(self.file, [self._placed(problem) for problem in error.problems]) from None
+            axes = {axis.key: axis for axis in self.axes}
+            raise type(error)(self.file, [_placed(problem, axes) for problem in error.problems]) from None
         return Stop(index, key or stop_key(scenario), scenario, self.histories)
 
     def conditions(self, index: int) -> dict[str, Any]:
@@ -129,7 +130,7 @@ class Study:
             if lists and len(shape.values) > 1:
                 rule = f"must be `computed` where `{shape.key}` varies, because given coefficients belong to one tank"
                 problem = Problem(None, axis.key, rule, plain(lists[0]), "write `computed`", override=axis.key)
-                raise OutlivedCoefficientsError(self.file, [self._placed(problem)])
+                raise OutlivedCoefficientsError(self.file, [_placed(problem, {axis.key: axis})])
 
     def _index(self, places: Mapping[int, int]) -> int:
         """The stop at the given places of the axes, by their number; the first place on every other axis."""
@@ -159,12 +160,13 @@ class Study:
             above, rest = divmod(turn, below)
             yield (above * count + place) * below + rest
 
-    def _placed(self, problem: Problem) -> Problem:
-        """A problem with its place as the person wrote it: an option or a line of the study file."""
-        for axis in self.axes:
-            if problem.override == axis.key:
-                return copy_of(problem, line=axis.line, override="" if axis.line else axis.source)
+
+def _placed(problem: Problem, axes: Mapping[str, Axis]) -> Problem:
+    """A problem with its place as the person wrote it: an option or a line of the study file."""
+    axis = axes.get(problem.override)
+    if axis is None:
         return problem
+    return copy_of(problem, line=axis.line, override="" if axis.line else axis.source)
 
 
 def describe(values: Mapping[str, str]) -> str:

@@ -21,13 +21,17 @@ from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
 from slosh_cli.scenario import find_packaged, load_document
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.leaves import NAME, file_safe
+from slosh_cli.scenario.source import text_of
 from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, listed, values_of
 from slosh_cli.study.plan import LIQUID
 
 KEYS: Final = ("name", "description", "base", "vary", "liquid")
 
-_STUDY = re.compile(r"^(?:base|vary)\s*:", re.MULTILINE)
+_MAYBE = re.compile(r"""\b(?:base|vary)["']?\s*:""")
+_TELLING: Final = frozenset({"base", "vary"})
+"""A scenario has neither of these keys."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +44,18 @@ class StudyFile:
 
 
 def is_study_file(path: Path) -> bool:
-    """Whether the file looks like a study; a scenario has neither of its two keys."""
+    """Whether the file looks like a study, in YAML or JSON; False where it cannot be read at all."""
     try:
-        return bool(_STUDY.search(path.read_text(encoding="utf-8-sig", errors="replace")))
-    except OSError:
+        text = text_of(path)
+    except ScenarioError:
         return False
+    if not _MAYBE.search(text):
+        return False
+    try:
+        data = parse(text, str(path)).data
+    except ScenarioError:  # no YAML: by its looks
+        return any(line.startswith(tuple(_TELLING)) for line in text.splitlines())
+    return isinstance(data, dict) and not _TELLING.isdisjoint(data)
 
 
 def read_study_file(path: Path) -> StudyFile:

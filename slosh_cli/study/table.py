@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
-from pathlib import Path
 from typing import Any, Final
 
 from slosh_cli.results.channels import WHEELS
-from slosh_cli.results.files import replacing
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
@@ -31,9 +28,8 @@ _OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
 
 
 def column_of(axis: Axis) -> str:
-    """Name of an axis in the table: its key path and unit, ``wagon.pivot_spacing_m``."""
-    unit = re.sub(r"[^A-Za-z0-9]+", "_", axis.unit).strip("_")
-    return f"{axis.key}_{unit}" if unit else axis.key
+    """Name of an axis in the table: its key path and unit, ``wagon_pivot_spacing_m``; a name in Python too."""
+    return re.sub(r"[^A-Za-z0-9]+", "_", f"{axis.key}_{axis.unit}").strip("_")
 
 
 def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
@@ -81,18 +77,3 @@ def _ratio(row: Row, solid: Row | None) -> float | None:
         return None
     mine, other = row.get("braking_distance_m"), solid.get("braking_distance_m")
     return mine / other if mine is not None and other is not None else None
-
-
-def write_study_table(names: Sequence[str], rows: Iterable[Row], path: Path) -> int:
-    """Write rows as CSV with the columns `names`, empty where a row has none; returns how many there were.
-
-    The file at `path` is replaced only when the new one is whole. Raises FileError.
-    """
-    count = 0
-    with replacing(path) as temporary, temporary.open("x", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=names, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow(row)
-            count += 1
-    return count

@@ -32,7 +32,8 @@ USAGE = {
     "no such option": (["run", "x.yaml", "--quick"], "No such option: --quick"),
     "argument missing": (["run"], "Missing argument 'SCENARIO'"),
     "value missing": (["run", "x.yaml", "--set"], "requires an argument"),
-    "one argument too many": (["schema", "now"], "unexpected extra argument"),
+    "schema of nothing known": (["schema", "train"], "'train' is not one of 'scenario', 'study'"),
+    "one argument too many": (["schema", "scenario", "now"], "unexpected extra argument"),
 }
 
 

@@ -2,8 +2,10 @@
 
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import pytest
 from stand_ins import PAPER, Slosh, Solver
 
@@ -104,6 +106,13 @@ def test_schema_is_a_json_schema_of_the_scenario(slosh: Slosh) -> None:
     assert {"wagon", "tank", "track", "contact", "braking"} <= set(schema["properties"])
 
 
+def test_schema_of_a_study(slosh: Slosh) -> None:
+    schema = json.loads(slosh("schema", "study").out)
+    assert set(schema["properties"]) == {"name", "description", "base", "vary", "liquid"}
+    assert {"tank.fill", "braking.torque", "contact.adhesion"} <= set(schema["properties"]["vary"]["properties"])
+    assert json.loads(slosh("schema", "scenario").out) == json.loads(slosh("schema").out)
+
+
 def test_plot_draws_beside_the_history(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
     slosh("run", PAPER, "-o", "here", "--no-figures")
     outcome = slosh("plot", "here/run.h5")
@@ -121,6 +130,31 @@ def test_plot_draws_where_the_user_wants(slosh: Slosh, solver: Solver, tmp_path:
     assert slosh("plot", "here/run.h5", "-o", "there").code == ExitCode.DONE
     assert len(list((tmp_path / "there").iterdir())) == 8
     assert len(list((tmp_path / "here").iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (
+            lambda file: [file.pop(f"wheel_{i}_speed") for i in (1, 2, 3, 4)],
+            "it lacks the channels wheel_1_speed, wheel",
+        ),
+        (
+            lambda file: file.attrs.modify("status", "nonsense"),
+            "its attribute status must be one of stopped, time-limit",
+        ),
+    ],
+)
+def test_plot_of_a_damaged_history_names_what_is_missing(
+    slosh: Slosh, solver: Solver, tmp_path: Path, spoil: Callable[[h5py.File], object], said: str
+) -> None:
+    slosh("run", PAPER, "-o", "here")
+    with h5py.File(tmp_path / "here" / "run.h5", "r+") as file:
+        spoil(file)
+    outcome = slosh("plot", "here/run.h5", "-o", "there")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert f"cannot read {Path('here/run.h5')} as a slosh history: {said}" in outcome.err
+    assert not (tmp_path / "there").exists()
 
 
 @pytest.mark.parametrize("file", ["nowhere.h5", PAPER, "."])

@@ -142,8 +142,8 @@ def test_any_key_can_vary_several_at_once(slosh: Slosh, quick: QuickSolver, tmp_
     assert outcome.code == ExitCode.DONE
     table = pd.read_csv(tmp_path / "here" / "braking_distance.csv")
     assert len(table) == 36
-    assert sorted(table["wagon.pivot_spacing_m"].unique()) == [10.0, 12.0, 14.0]
-    assert sorted(table["tank.fill"].unique()) == [0.3, 0.4, 0.5]
+    assert sorted(table["wagon_pivot_spacing_m"].unique()) == [10.0, 12.0, 14.0]
+    assert sorted(table["tank_fill"].unique()) == [0.3, 0.4, 0.5]
     assert {scenario.contact.adhesion.mu0 for scenario in quick.scenarios} == {0.55, 0.3}
     assert "fig3" not in outcome.out
 

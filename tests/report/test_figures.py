@@ -17,6 +17,7 @@ from slosh_cli.report.record import caption, conditions, locked_stretches
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Result, Status
+from slosh_cli.results.stored import NEEDED
 
 NAMES = ["contact_forces", "speed_distance", "wheel_speed", "slosh"]
 
@@ -166,6 +167,16 @@ def test_a_run_of_a_single_row_can_be_drawn(liquid: Result, tmp_path: Path) -> N
         braking_distance_m=None,
     )
     assert len(draw_run(run, tmp_path, formats=("png",))) == 4
+
+
+def test_the_channels_that_a_history_must_have_are_all_that_figures_need(liquid: Result, tmp_path: Path) -> None:
+    bare = replace(liquid, channels={name: liquid.channels[name] for name in NEEDED})
+    assert len(draw_run(bare, tmp_path, formats=("svg",))) == 4
+    for name in NEEDED:
+        with pytest.raises(KeyError):
+            draw_run(
+                replace(bare, channels={other: bare.channels[other] for other in NEEDED - {name}}), tmp_path, ("svg",)
+            )
 
 
 def test_drawing_from_the_history_file_gives_the_same_figures(liquid: Result, drawn: Path, tmp_path: Path) -> None:

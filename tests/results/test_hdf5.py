@@ -1,7 +1,9 @@
 """The history file: read back the same, by this program and by others; never half written."""
 
 import pickle
+import random
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -17,6 +19,7 @@ from slosh_cli.results.channels import channel
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Result, Status
+from slosh_cli.results.stored import ATTRIBUTES, NEEDED
 
 
 @pytest.fixture
@@ -140,6 +143,30 @@ def _replace_speed(file: h5py.File) -> None:
     file["speed"] = np.zeros(3)
 
 
+def _put(name: str, value: object) -> Callable[[Path], None]:
+    """Another dataset in the place of one."""
+
+    def change(file: h5py.File) -> None:
+        del file[name]
+        file[name] = value
+
+    return _edit(change)
+
+
+def _call(name: str, value: object) -> Callable[[Path], None]:
+    """Another value of an attribute."""
+
+    def change(file: h5py.File) -> None:
+        file.attrs[name] = value
+
+    return _edit(change)
+
+
+def _sparse(file: h5py.File) -> None:
+    del file["speed"]
+    file.create_dataset("speed", shape=(10**12,), chunks=(1000,), dtype="f8")
+
+
 SPOILED: dict[str, tuple[Callable[[Path], Any], str]] = {
     "missing": (lambda path: path.unlink(), "does not exist"),
     "empty": (lambda path: path.write_bytes(b""), "cannot read"),
@@ -147,10 +174,20 @@ SPOILED: dict[str, tuple[Callable[[Path], Any], str]] = {
     "cut short": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "cannot read"),
     "another program's": (_edit(lambda file: file.attrs.pop("program")), "not the history of a slosh run"),
     "another format": (_edit(lambda file: file.attrs.modify("format_version", 99)), "history format 99"),
-    "no time": (_edit(lambda file: file.pop("time")), "cannot read"),
-    "no scenario": (_edit(lambda file: file.pop("scenario")), "cannot read"),
-    "no status": (_edit(lambda file: file.attrs.pop("status")), "lacks the attributes status"),
+    "no scenario": (_edit(lambda file: file.pop("scenario")), "it lacks the text scenario"),
+    "a number as scenario": (_put("scenario", 1.5), "it lacks the text scenario"),
     "short channel": (_edit(_replace_speed), "speed is not as long"),
+    "two channels gone": (
+        _edit(lambda file: [file.pop(name) for name in ("wheel_2_speed", "wheel_1_speed")]),
+        "it lacks the channels wheel_1_speed, wheel_2_speed",
+    ),
+    "time that falls": (_edit(lambda file: file["time"].write_direct(file["time"][:][::-1].copy())), "must not fall"),
+    "a trillion rows": (_edit(_sparse), "speed must have from 1 to 10000000 rows"),
+    "unknown status": (_call("status", "nonsense"), "status must be one of stopped, .*failed, but is `'nonsense'`"),
+    "half a character": (_call("name", np.bytes_(b"a\xff")), "cannot read"),
+    "three wheels": (_call("static_wheel_load_N", [1.0, 2.0, 3.0]), "static_wheel_load_N must be 4 finite numbers"),
+    "no onset": (_call("onset_s", float("nan")), "onset_s must be a finite number"),
+    "onset before all time": (_call("onset_s", -1e300), "onset_s must be a finite number"),
 }
 
 
@@ -161,6 +198,65 @@ def test_a_bad_file_is_refused_in_clear_words(file: Path, spoil: Callable[[Path]
         read_history(file)
     assert refusal.value.where == str(file)
     assert str(file) in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["time", *sorted(NEEDED)])
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (lambda name: _edit(lambda file: file.pop(name)), "it lacks the channels {}"),
+        (lambda name: _put(name, "text"), "its {} must be a column of numbers"),
+        (lambda name: _put(name, np.zeros((3, 2))), "its {} must be a column of numbers"),
+        (lambda name: _put(name, np.array([b"1.0"] * 3)), "its {} must be a column of numbers"),
+        (lambda name: _put(name, np.zeros(3, complex)), "its {} must be a column of numbers"),
+        (lambda name: _put(name, np.zeros(0)), "its {} must have from 1"),
+        (lambda name: _put(name, np.full(3, np.nan)), "{} must be finite|{} is not as long"),
+    ],
+    ids=["gone", "text", "plane", "texts", "complex", "empty", "nan"],
+)  # fmt: skip
+def test_every_channel_that_is_needed_is_checked(
+    file: Path, name: str, spoil: Callable[[str], Callable[[Path], None]], message: str
+) -> None:
+    spoil(name)(file)
+    with pytest.raises(FileError, match=message.format(name, name)) as refusal:
+        read_history(file)
+    assert str(refusal.value).startswith(f"cannot read {file} as a slosh history: it")
+
+
+@pytest.mark.parametrize("name", ATTRIBUTES)
+@pytest.mark.parametrize("value", [None, "nonsense", [1.0, 2.0], ["a", "b"], float("inf"), True])
+def test_every_attribute_that_is_needed_is_checked(file: Path, name: str, value: object) -> None:
+    if value == "nonsense" and name in ("name", "reason", "warnings", "liquid_model"):
+        return
+    (_edit(lambda h5: h5.attrs.pop(name)) if value is None else _call(name, value))(file)
+    with pytest.raises(FileError, match=name):
+        read_history(file)
+
+
+def test_a_file_with_any_bytes_changed_or_cut_is_read_or_refused(file: Path) -> None:
+    whole, chance = file.read_bytes(), random.Random(1)
+    for trial in range(150):
+        spoilt = bytearray(whole[: chance.randrange(len(whole))] if trial % 3 == 0 else whole)
+        for _ in range(chance.choice([0, 1, 3, 20])):
+            spoilt[chance.randrange(min(len(spoilt), 30_000))] = chance.randrange(256)
+        file.write_bytes(spoilt)
+        with suppress(FileError):
+            read_history(file)
+
+
+def test_a_channel_that_is_not_finite_is_named(file: Path) -> None:
+    with h5py.File(file, "r+") as h5:
+        h5["wheel_3_normal_force"][5] = np.nan
+    with pytest.raises(FileError, match="its channel wheel_3_normal_force must be finite"):
+        read_history(file)
+
+
+def test_what_else_is_in_the_file_is_left_alone(result: Result, file: Path) -> None:
+    with h5py.File(file, "r+") as h5:
+        h5["remark"] = "mine"
+        h5.create_group("more")["speed"] = [1.0]
+        h5["own_column"] = np.zeros(3)
+    assert set(read_history(file).channels) == set(result.channels)
 
 
 def test_a_folder_is_refused_with_a_hint(tmp_path: Path) -> None:

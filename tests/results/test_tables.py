@@ -1,5 +1,6 @@
 """Tables: units in the column names, readable as they are."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Result
-from slosh_cli.results.tables import summary_row, write_summary, write_table
+from slosh_cli.results.tables import summary_row, write_rows, write_summary, write_table
 
 
 def test_the_first_columns_are_those_of_the_contract(result: Result) -> None:
@@ -67,3 +68,51 @@ def test_a_folder_in_the_way_is_the_users_matter(result: Result, tmp_path: Path)
     (tmp_path / "summary.csv").mkdir()
     with pytest.raises(FileError, match=r"cannot write .*summary\.csv"):
         write_summary(result, tmp_path / "summary.csv")
+
+
+FORMULAS = [
+    "=1+1",
+    "=HYPERLINK(1)",
+    "+1+1",
+    "-1+1",
+    "@SUM(1)",
+    "\t=1",
+    "\r=1",
+    "\n=1",
+    " =1",
+    "＝1",
+    "-5 kg",
+    "-",
+    '="a"',
+]
+
+
+@pytest.mark.parametrize("text", FORMULAS)
+def test_a_spreadsheet_finds_no_formula(result: Result, tmp_path: Path, text: str) -> None:
+    write_rows([text, "b"], [{text: text, "b": 1.0}], tmp_path / "t.csv")
+    with (tmp_path / "t.csv").open(encoding="utf-8", newline="") as file:
+        cells = [row[0] for row in csv.reader(file)]
+    kept = "'" + text.replace("\r", "\n")
+    assert cells == [kept] * 2
+    write_summary(replace(result, reason=text), tmp_path / "summary.csv")
+    assert pd.read_csv(tmp_path / "summary.csv")["reason"][0] == kept
+
+
+@pytest.mark.parametrize("text", ["a\rb", "a\r\nb", "a\nb", "a\r", '"\r,'])
+def test_a_line_end_in_a_text_ends_no_row(text: str, tmp_path: Path) -> None:
+    write_rows(["a", "b"], [{"a": text, "b": 1.0}] * 2, tmp_path / "t.csv")
+    table = pd.read_csv(tmp_path / "t.csv")
+    assert list(table["b"]) == [1.0, 1.0]
+    assert list(table["a"]) == [text.replace("\r\n", "\n").replace("\r", "\n")] * 2
+
+
+def test_numbers_and_other_text_stay_as_they_are(tmp_path: Path) -> None:
+    values = [-1.5, 2, -0.0, float("-inf"), "-1.5", "+2", "-1e-3", "a=b", "'x", "", None, True]
+    write_rows(["a"], [{"a": value} for value in values], tmp_path / "t.csv")
+    lines = (tmp_path / "t.csv").read_text().splitlines()
+    assert lines == ["a", "-1.5", "2", "-0.0", "-inf", "-1.5", "+2", "-1e-3", "a=b", "'x", '""', '""', "True"]
+
+
+def test_text_that_utf8_cannot_hold_costs_no_table(tmp_path: Path) -> None:
+    assert write_rows(["a"], [{"a": "x\ud800"}], tmp_path / "t.csv") == 1
+    assert (tmp_path / "t.csv").read_text(encoding="utf-8") == "a\nx\\ud800\n"

@@ -365,7 +365,7 @@ SHAPES_AND_TYPES = (
         "    - 0.69 rad/s",
         (
             28, "tank.coefficients.0", "must be a mapping with the keys frequency, lambda_1", "`0.69 rad/s`",
-            "write these keys under",
+            "write the item as `{frequency: ..., lambda_1",
         ),
     ),
     one(
@@ -397,7 +397,7 @@ SHAPES_AND_TYPES = (
     ),
     one(
         "missing adhesion", "  adhesion: dry\n", "",
-        (38, "contact.adhesion", "is required", "nothing", "write `adhesion: dry`"),
+        (38, "contact.adhesion", "is required", "nothing", "such as `adhesion: dry`"),
     ),
     one("missing version", "format: 1\n", "", (1, "format", "is required", "nothing", "write `format: 1`")),
     one(

@@ -11,10 +11,10 @@ from written_quantities import UNITS, factor, measures, quantity, slip, spelt_nu
 from slosh_cli.errors import Problem, ScenarioError, ValueRefused
 from slosh_cli.scenario import Liquid, Rectangular, Scenario, TankScenario, parse_scenario, replace
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.diagnosis import leaves_of, part_of
 from slosh_cli.scenario.leaves import Count, Leaf, Number, Quantity, Range
 from slosh_cli.scenario.polygon import Outline
 from slosh_cli.scenario.schema_tank import SHAPES, Baffle, Coefficient
+from slosh_cli.scenario.tree import leaves_of, spot_of
 from slosh_cli.scenario.units import DIMENSIONS, parse_quantity
 
 SAME = 1e-12
@@ -31,7 +31,7 @@ def every_leaf() -> Iterator[tuple[str, Leaf]]:
 
     def below(model: type[Part], prefix: str) -> Iterator[tuple[str, Leaf]]:
         for name, leaf in leaves_of(model):
-            part = part_of(model.model_fields[name])
+            part = spot_of(model, name).part
             if leaf is not None:
                 yield prefix + name, leaf
             elif part is not None:

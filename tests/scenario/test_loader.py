@@ -99,6 +99,30 @@ def test_find_packaged(name: str) -> None:
     assert find_packaged(name).name == "paper_160_solid.yaml"
 
 
+def test_a_packaged_scenario_is_read_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    by_name = load_scenario("paper-80-liquid", ["braking.torque=10 kN m"])
+    assert by_name == load_scenario(find_packaged("paper-80-liquid"), ["braking.torque=10 kN m"])
+    assert load_tank_scenario("kolaei-half").name == "kolaei-half"
+    with pytest.raises(ScenarioError, match=r"^paper-80-liquid:\d+: tank.fill: |^--set tank.fill: must be"):
+        load_scenario("paper-80-liquid", ["tank.fill=2"])
+
+
+def test_a_file_goes_before_a_packaged_scenario_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "paper-80-liquid").write_text(BASE, encoding="utf-8")
+    assert load_scenario("paper-80-liquid").name == "example"
+
+
+@pytest.mark.parametrize(
+    "given", ["paper_80.yaml", "./paper-80-liquid", "there/paper-80-liquid", "paper-80", "Paper-80-liquid"]
+)
+def test_what_is_no_name_must_be_a_file(given: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ScenarioError, match="must exist; given a path with no file"):
+        load_scenario(given)
+
+
 def test_find_packaged_guesses() -> None:
     with pytest.raises(UsageError, match="given `paper-80-solit`; write `paper-80-solid`"):
         find_packaged("paper-80-solit")

@@ -124,9 +124,11 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
     torque = schema["$defs"]["Braking"]["properties"]["torque"]
     assert (torque["type"], torque["x-unit"], torque["examples"]) == ("string", "N m", ["5 kN m"])
     assert schema["$defs"]["Braking"]["properties"]["stop_speed"]["default"] == "0.02 m/s"
-    assert schema["required"] == ["format", "name", "wagon", "tank", "track", "contact", "braking"]
+    assert schema["required"] == ["format", "name", "tank"]
+    assert schema["then"]["required"] == ["wagon", "track", "contact", "braking"]
+    assert schema["then"]["properties"]["tank"]["required"] == ["bottom_height"]
     cylinder = schema["$defs"]["HorizontalCylinder"]
-    assert {"shape", "bottom_height", "length"} <= set(cylinder["required"])
+    assert {"shape", "length"} <= set(cylinder["required"])
     assert cylinder["oneOf"] == [{"required": ["radius"]}, {"required": ["diameter"]}]
     assert schema["$defs"]["Contact"]["properties"]["adhesion"]["anyOf"][0] == {"enum": ["dry", "wet"]}
     assert all(not definition["additionalProperties"] for definition in schema["$defs"].values())

@@ -10,6 +10,7 @@ from slosh_cli.errors import ScenarioError
 from slosh_cli.scenario import (
     HorizontalCylinder,
     Liquid,
+    OutlivedCoefficientsError,
     Scenario,
     load_scenario,
     parse_scenario,
@@ -19,6 +20,9 @@ from slosh_cli.scenario import (
 
 TANK = ("  radius: 1.5 m", "  diameter: 3 m")
 WHEEL = ("wheel_radius: 0.46 m", "wheel_diameter: 920 mm")
+COMPUTED = "tank.coefficients=computed"
+NEW_MODES = {"tank.coefficients": "computed"}
+"""A changed tank needs slosh coefficients of its own."""
 COULOMB = {"mu0": 0.15, "A": 1.0, "B": 0.0, "kA": 1.0, "kS": 1.0}
 
 
@@ -49,13 +53,21 @@ def test_a_diameter_in_python() -> None:
 @pytest.mark.parametrize("text", [BASE, edited(TANK)])
 @pytest.mark.parametrize("override", ["tank.radius=1.2 m", "tank.diameter=2.4 m"])
 def test_an_override_of_either_replaces_whichever_the_file_gives(file: Path, text: str, override: str) -> None:
-    assert load(file, override, text=text).tank.width == 2.4
+    assert load(file, override, COMPUTED, text=text).tank.width == 2.4
     key, _, value = override.partition("=")
-    assert replace(parse_scenario(text), {key: value}).tank.width == 2.4
+    assert replace(parse_scenario(text), {key: value} | NEW_MODES).tank.width == 2.4
+    with pytest.raises(OutlivedCoefficientsError, match=r"given `1\.2 m` instead of `1\.5 m`"):
+        load(file, override, text=text)
+
+
+@pytest.mark.parametrize("text", [BASE, edited(TANK)])
+@pytest.mark.parametrize("override", ["tank.radius=1.5 m", "tank.diameter=3000 mm"])
+def test_the_same_size_by_either_key_keeps_the_given_coefficients(file: Path, text: str, override: str) -> None:
+    assert load(file, override, text=text) == parse_scenario(BASE)
 
 
 def test_replace_takes_the_number_of_a_diameter_in_metres() -> None:
-    found = replace(parse_scenario(BASE), {"tank.diameter": 2.5, "wagon.wheelset.wheel_diameter": 0.84})
+    found = replace(parse_scenario(BASE), {"tank.diameter": 2.5, "wagon.wheelset.wheel_diameter": 0.84} | NEW_MODES)
     assert (found.tank.height, found.wagon.wheelset.wheel_radius) == (2.5, 0.42)
 
 
@@ -125,4 +137,4 @@ def test_a_number_for_the_adhesion_in_python_and_changed_in_part(file: Path) -> 
 @pytest.mark.parametrize("share", ["60 %", "60%", "600 ‰", "60 percent", "60 per cent", "6,0e1 %"])
 def test_a_fill_in_per_cent_is_the_number(file: Path, share: str) -> None:
     assert load(file, text=edited(("fill: 0.5", f"fill: {share}"))).tank.fill == 0.6
-    assert replace(parse_scenario(BASE), {"tank.fill": share}).tank.fill == 0.6
+    assert replace(parse_scenario(BASE), {"tank.fill": share} | NEW_MODES).tank.fill == 0.6

@@ -1,5 +1,6 @@
 """What a command line or a study file asks for becomes a grid of stops."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from slosh_cli.scenario import Scenario, find_packaged, replace
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.key import stop_key
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
+from slosh_cli.study.study_file import is_study_file
 
 
 def axes(study: Study) -> dict[str, tuple[str, ...]]:
@@ -198,3 +200,29 @@ def test_a_stop_without_history_has_the_key_of_one_with_it() -> None:
     assert without.stop(0).scenario.output.interval == 100.0
     assert with_it.stop(0).scenario.output.interval == 0.01
     assert with_it.stop(0).scenario.description.startswith("braking.initial_speed 80 km/h")
+
+
+STUDY = {"base": "paper-80-liquid", "vary": {"tank.fill": "0.3:0.5:0.1", "contact.adhesion": ["dry", "wet"]}}
+
+
+@pytest.mark.parametrize("indent", [None, 2, "\t"])
+def test_a_study_may_be_json(indent: int | str | None, tmp_path: Path) -> None:
+    (tmp_path / "s.json").write_text(json.dumps(STUDY, indent=indent), encoding="utf-8")
+    assert axes(build(Wishes(tmp_path / "s.json"))) == {
+        "tank.fill": ("0.3", "0.4", "0.5"),
+        "contact.adhesion": ("dry", "wet"),
+        LIQUID: ("modal", "rigid"),
+    }
+
+
+def test_a_scenario_with_such_words_in_it_is_none(tmp_path: Path) -> None:
+    text = find_packaged("paper-80-liquid").read_text(encoding="utf-8")
+    (tmp_path / "a.yaml").write_text(f"x-own:\n  base: 1\n{text}# vary: this\n", encoding="utf-8")
+    assert not is_study_file(tmp_path / "a.yaml")
+    assert build(Wishes(tmp_path / "a.yaml")).name == "paper-80-liquid"
+
+
+def test_a_study_that_is_no_yaml_is_told_so_as_a_study(tmp_path: Path) -> None:
+    (tmp_path / "s.yaml").write_text("base: paper-80-liquid\nvary: {tank.fill: [0.3\n", encoding="utf-8")
+    assert is_study_file(tmp_path / "s.yaml")
+    assert not is_study_file(tmp_path / "nowhere.yaml")

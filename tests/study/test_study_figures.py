@@ -168,8 +168,8 @@ def shown(wishes: Wishes) -> list[tuple[str, str, list[str]]]:
     for index in range(study.size):
         values = {axis.key: axis.plain(place) for axis, place in zip(study.axes, study.positions(index), strict=True)}
         row = study.conditions(index) | {"status": "stopped", "braking_distance_m": 100.0 + index}
-        units = {"tank.fill": "tank.fill", "contact.adhesion": "contact.adhesion",
-                 "wagon.pivot_spacing": "wagon.pivot_spacing_m"}  # fmt: skip
+        units = {"tank.fill": "tank_fill", "contact.adhesion": "contact_adhesion",
+                 "wagon.pivot_spacing": "wagon_pivot_spacing_m"}  # fmt: skip
         rows.append(row | {units[key]: value for key, value in values.items() if key in units})
     return [(one.conditions, one.label, [panel.title for panel in one.panels]) for one in pages(study, rows)]
 
@@ -214,7 +214,7 @@ def test_without_torque_and_speed_the_last_key_lies_along_the_bottom() -> None:
 def test_words_along_the_bottom_are_named() -> None:
     study = build(Wishes(vary=["contact.adhesion=dry,wet"]))
     rows = [
-        study.conditions(index) | {"status": "stopped", "braking_distance_m": 9.0 + index, "contact.adhesion": word}
+        study.conditions(index) | {"status": "stopped", "braking_distance_m": 9.0 + index, "contact_adhesion": word}
         for index, word in enumerate(("dry", "dry", "wet", "wet"))
     ]
     (found,) = pages(study, rows)
