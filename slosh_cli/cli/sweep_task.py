@@ -81,13 +81,12 @@ def _compute(task: Task, planned: "Plan", journal: "Journal") -> bool:
 
 def _prepare(task: Task, planned: "Plan", journal: "Journal") -> None:
     """Compile or load the kernels where an interrupt is heard; note in the journal who computes."""
-    from slosh_cli.compiled import CACHE_FOLDER
+    from slosh_cli.compiled import SOURCES
 
-    sources = CACHE_FOLDER.name
-    others = journal.other_sources(sources)
+    others = journal.other_sources(SOURCES)
     if others:
         warn(f"{others} stops in the journal are by another build of the solver; --fresh computes them anew")
-    journal.begin_session(sources)
+    journal.begin_session(SOURCES)
     if task.cluster is None:
         from slosh_cli.cli.progress import announce_compilation
         from slosh_cli.study.threads import warm_up

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain, note, say, say_json, show, warn
+from slosh_cli.cli.output import complain, say, say_json, show, warn
+from slosh_cli.cli.progress import announce_compilation
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.scenario import parse_quantity
@@ -45,7 +46,7 @@ def run_excitation(
     duration, interval = _times(wishes)
     deceleration = _deceleration(wishes, duration)
     folder = output or Path("outputs") / scenario.name
-    _announce()
+    announce_compilation("the liquid", 10, "excite_kernels")
     from slosh_cli.solver.excite import excite
 
     found = excite(scenario.tank, deceleration, duration, interval)
@@ -165,14 +166,6 @@ def _positive(text: str, option: str) -> float:
     if value <= 0.0:
         raise UsageError(f"{option} must be positive; given `{text}`", option)
     return value
-
-
-def _announce() -> None:
-    """Say that this first time takes longer, when the loops have not been compiled yet."""
-    from slosh_cli.compiled import CACHE_FOLDER
-
-    if not any(CACHE_FOLDER.rglob("*excite*.nbc")):
-        note("Compiling the liquid, once: about 10 s. Later it starts at once.")
 
 
 def _room(scenario: "Scenario | TankScenario") -> float:

@@ -199,7 +199,19 @@ def test_the_history_holds_the_scenario_as_it_was_run(slosh: Slosh, solver: Solv
 
 
 def test_the_first_run_announces_the_compilation(slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
     outcome = slosh("run", PAPER, "--no-figures", "--json")
     assert outcome.err.startswith("Compiling the solver, once")
     strict_json(outcome.out)
+
+
+def test_where_nothing_can_be_kept_it_says_so_and_how_to_mend_it(
+    slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "not_kept", lambda: "cannot write into /nowhere")
+    err = slosh("run", PAPER, "--no-figures", "--json").err
+    assert "in memory, for this run only" in err
+    assert "cannot write into /nowhere" in err
+    assert "NUMBA_CACHE_DIR" in err
+    assert "Later runs start at once" not in err

@@ -38,7 +38,7 @@ def template() -> Result:
 def quick(monkeypatch: pytest.MonkeyPatch, template: Result) -> QuickSolver:
     solver = QuickSolver(template)
     monkeypatch.setattr(slosh_cli.results.simulate, "simulate", solver.simulate)
-    monkeypatch.setattr("slosh_cli.compiled.is_cached", lambda: True)
+    monkeypatch.setattr("slosh_cli.compiled.is_cached", lambda *_: True)
     monkeypatch.setattr("slosh_cli.report.study_figures.draw_study", _touch)
     return solver
 
@@ -280,7 +280,7 @@ def test_stops_of_another_build_of_the_solver_are_told(
     slosh: Slosh, quick: QuickSolver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     slosh("sweep", "--torque", "5")
-    monkeypatch.setattr("slosh_cli.compiled.CACHE_FOLDER", Path("another"))
+    monkeypatch.setattr("slosh_cli.compiled.SOURCES", "another")
     outcome = slosh("sweep", "--torque", "5,10")
     assert "4 stops in the journal are by another build of the solver; --fresh computes them anew" in outcome.err
 
