@@ -26,7 +26,7 @@ from slosh_cli.scenario import Scenario, load_scenario
 from slosh_cli.scenario import replace as with_values
 
 KEYS = ["name", "runs", "done", "failed", "reused", "table", "figures", "wall_seconds"]
-FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite", "journal.lock"}
+FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite"}
 
 
 @pytest.fixture(scope="module")

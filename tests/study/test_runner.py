@@ -33,7 +33,7 @@ def carry_out(study: Study, folder: Path, threads: int = 2, cancel: threading.Ev
     with Journal(folder / JOURNAL) as journal:
         planned = plan(study, journal, folder)
         stop = cancel or threading.Event()
-        done = run_study(study, planned, journal, Threads(threads), folder, cancel=stop, report=silent)
+        done = run_study(study, planned, journal, Threads(threads), cancel=stop, report=silent)
         return planned.reused, done
 
 
@@ -229,7 +229,7 @@ def test_histories_are_kept_when_asked_for(solver: QuickSolver, tmp_path: Path) 
     files = [str(row["history"]) for row in found]
     assert len(set(files)) == 16
     assert all((tmp_path / file).is_file() for file in files)
-    (tmp_path / history_file(study.stop(3).key)).unlink()
+    (tmp_path / history_file(study.stop(3).scenario)).unlink()
     assert carry_out(study, tmp_path) == (15, 1)
 
 
