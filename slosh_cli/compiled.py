@@ -113,9 +113,12 @@ def part_kernel(function: F) -> F:
     return _compile(function, no_cpython_wrapper=True, forceinline=True)
 
 
-def is_cached(module: str = "advance") -> bool:
-    """True when the kernels of `module` (by default: the time loop) were compiled before by this very build."""
-    return bool(getattr(config, "DISABLE_JIT", False)) or STORE.holds(module)
+def is_cached(name: str = "advance.advance") -> bool:
+    """True when the kernel `name` (MODULE.FUNCTION, by default the time loop) was compiled before by this very build.
+
+    A kernel is kept after the ones that it calls, and with them.
+    """
+    return bool(getattr(config, "DISABLE_JIT", False)) or STORE.holds(name)
 
 
 def not_kept() -> str:

@@ -76,9 +76,9 @@ class KernelStore:
                 return
         self.trouble = troubles[0]
 
-    def holds(self, module: str) -> bool:
-        """Whether a kernel of a module of that name was kept."""
-        return self.folder is not None and any(self.folder.glob(f"*.{module}.*.nbc"))
+    def holds(self, name: str) -> bool:
+        """Whether a kernel MODULE.FUNCTION of that name was kept."""
+        return self.folder is not None and any(self.folder.glob(f"*.{name}-*.nbc"))
 
     def load(self, name: str, key: object) -> Any:
         """What was kept for the function `name` and the signature `key`; None where there is nothing sound."""
@@ -98,7 +98,7 @@ class KernelStore:
 
     def save(self, name: str, key: object, value: object, dumps: Callable[[object], bytes]) -> None:
         """Keep `value`, whole or not at all; a disk that refuses is noted in `trouble`."""
-        if self.folder is None or self.trouble:
+        if self.folder is None:
             return
         content = dumps((key, value))
         file = self.folder / _file_name(name, key)

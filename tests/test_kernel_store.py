@@ -186,11 +186,21 @@ def test_a_file_that_is_another_signatures_is_not_taken(store: KernelStore) -> N
     assert sorted([store.load("module.f-1", 1) or "", store.load("module.f-1", 2) or ""])[0] == ""
 
 
-def test_a_module_is_held_once_a_function_of_it_was_kept(store: KernelStore) -> None:
-    assert not store.holds("advance")
-    store.save("slosh_cli.solver.advance.step-12", 1, 1, pickle.dumps)
-    assert store.holds("advance")
-    assert not store.holds("cells")
+def test_a_kernel_is_held_once_it_was_kept(store: KernelStore) -> None:
+    store.save("slosh_cli.solver.advance.advance_all-12", 1, 1, pickle.dumps)
+    store.save("slosh_cli.solver.advance._step-12", 1, 1, pickle.dumps)
+    assert not store.holds("advance.advance")  # what it calls may be kept, it must still be compiled
+    store.save("slosh_cli.solver.advance.advance-99", 1, 1, pickle.dumps)
+    assert store.holds("advance.advance")
+    assert not store.holds("cells.cells")
+
+
+def test_the_kernels_that_commands_ask_for_are_there() -> None:
+    """What the announcements look for by name."""
+    from slosh_cli.solver import advance, excite_kernels
+
+    for module, name in ((advance, "advance"), (excite_kernels, "modal_history"), (excite_kernels, "cells_history")):
+        assert callable(getattr(module, name))
 
 
 @pytest.mark.parametrize(

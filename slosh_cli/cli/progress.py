@@ -17,11 +17,13 @@ COMPILE_SECONDS: Final = 40
 """What compiling the time loop takes on an ordinary machine, in s."""
 
 
-def announce_compilation(what: str = "the solver", seconds: int = COMPILE_SECONDS, module: str = "advance") -> None:
-    """Say that this run takes longer when the kernels of `module` were not compiled before, and whether it is once."""
+def announce_compilation(
+    what: str = "the solver", seconds: int = COMPILE_SECONDS, kernel: str = "advance.advance"
+) -> None:
+    """Say that this run takes longer when `kernel` was not compiled before, and whether it is once."""
     from slosh_cli.compiled import is_cached, not_kept
 
-    if is_cached(module):
+    if is_cached(kernel):
         return
     trouble = not_kept()
     if not trouble:

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 TABLE: Final = "excite.csv"
 HISTORY: Final = "excite.h5"
 _FILES: Final = (TABLE, HISTORY, "excite.png", "excite.svg")
+_KERNELS: Final = {
+    "modal": "excite_kernels.modal_history",
+    "shallow-water": "excite_kernels.cells_history",
+}
 COLUMNS: Final = ("time_s", "deceleration_m_s2")
 MOST_ROWS: Final = 1_000_000
 LARGEST: Final = 1000.0
@@ -53,7 +57,8 @@ def run_excitation(
     settings = _settings(wishes)
     folder = output or _default(scenario, overrides, settings)
     try_targets(folder, _FILES)
-    announce_compilation("the liquid", 10, "excite_kernels")
+    if scenario.tank.liquid.model in _KERNELS:
+        announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
     from slosh_cli.solver.excite import excite
 
     found = excite(scenario.tank, deceleration, duration, interval)

@@ -86,10 +86,9 @@ def default_folder(names: Sequence[str] | None, cases: "Sequence[CaseData]") -> 
     """The folder of a report that was given none: a part of the cases does not replace the report of all."""
     if not names:
         return FOLDER
-    chosen = "+".join(data.name for data in cases)
-    return FOLDER / (
-        chosen if len(chosen) <= _LONGEST else f"{len(cases)}-cases-{sha256(chosen.encode()).hexdigest()[:8]}"
-    )
+    told = "+".join(data.name for data in cases)
+    short = f"{len(cases)}-cases-{sha256(told.encode()).hexdigest()[:8]}"
+    return FOLDER / (told if len(told) <= _LONGEST else short)
 
 
 def write_validation(
