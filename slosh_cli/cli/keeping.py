@@ -16,8 +16,6 @@ from slosh_cli.errors import SloshError
 OUTPUTS: Final = Path("outputs")
 _LONGEST: Final = 80
 """Characters of a folder's name that tell what was set; more are told by a hash."""
-_SAYS_NOTHING: Final = ("name", "description")
-"""Keys that are in the folder's name already, or change nothing."""
 
 
 class Keeping:
@@ -86,9 +84,13 @@ def files_text(files: Mapping[str, Any]) -> str:
 
 
 def default_folder(name: str, settings: Sequence[str] | None) -> Path:
-    """``outputs/NAME``, or ``outputs/NAME-braking.torque=12-kN-m`` where `settings` (KEY=VALUE) were given."""
-    told = sorted(text.strip() for text in settings or () if text.partition("=")[0].strip() not in _SAYS_NOTHING)
-    if not told:
+    """``outputs/NAME``, or ``outputs/NAME-braking.torque=12-kN-m`` where `settings` (KEY=VALUE) were given.
+
+    Who sets the name says by it what the settings are.
+    """
+    by_key = {text.partition("=")[0].strip(): text.strip() for text in settings or ()}
+    told = sorted(text for key, text in by_key.items() if key != "description")
+    if not told or "name" in by_key:
         return OUTPUTS / name
     words = "-".join(re.sub(r"[^\w.=+,-]+", "-", text) for text in told)
     if len(words) > _LONGEST:

@@ -86,9 +86,12 @@ def default_folder_of(study: "Study", overrides: Sequence[str]) -> Path:
     from slosh_cli.errors import SloshError
     from slosh_cli.study.journal import JOURNAL, Journal
     from slosh_cli.study.key import extends, study_key
+    from slosh_cli.study.lock import is_held
     from slosh_cli.study.table import TABLE
 
     def fits(folder: Path) -> bool:
+        if is_held(folder):  # and refused, with the holder's name, when it is to be taken
+            return True
         if not (folder / JOURNAL).exists():
             return not (folder / TABLE).exists()
         try:

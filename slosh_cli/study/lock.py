@@ -66,6 +66,18 @@ def _taken(path: Path) -> IO[str]:
     raise OSError(errno.EBUSY, os.strerror(errno.EBUSY))
 
 
+def is_held(folder: Path) -> bool:
+    """Whether another process works in `folder` now."""
+    try:
+        with (folder / LOCK).open("r+", encoding="utf-8") as file:
+            _take(file)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False
+
+
 def _sign(file: IO[str]) -> None:
     """Leave word of who holds the lock; a full disk is no reason to do without."""
     with suppress(OSError):

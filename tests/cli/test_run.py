@@ -294,7 +294,7 @@ def test_what_was_set_is_in_the_folders_name(slosh: Slosh, solver: Solver, tmp_p
     slosh("run", PAPER, "--no-figures")
     slosh("run", PAPER, "--no-figures", "--set", "tank.liquid.model=rigid", "--set", "braking.torque=12 kN m")
     slosh("run", PAPER, "--no-figures", "--set", "braking.torque=12 kN m", "--set", "tank.liquid.model=rigid")
-    slosh("run", PAPER, "--no-figures", "--set", "name=mine")
+    slosh("run", PAPER, "--no-figures", "--set", "name=mine", "--set", "tank.fill=0.4")
     assert names(tmp_path / "outputs") == {
         "paper-80-liquid", "paper-80-liquid-braking.torque=12-kN-m-tank.liquid.model=rigid", "mine",
     }  # fmt: skip

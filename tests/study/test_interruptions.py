@@ -166,18 +166,18 @@ def test_a_full_disk_does_not_take_the_answer_of_a_run(tmp_path: Path, largest: 
 
 
 def test_a_full_disk_does_not_take_the_rows_of_a_sweep_with_histories(tmp_path: Path) -> None:
-    code, out, err = run_slosh(tmp_path, *sweep(2, "--histories", "--json"), LARGEST_FILE=60_000)
+    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"), LARGEST_FILE=60_000)
     assert code == 2, err
     assert "Traceback" not in err
     answer = json.loads(out)
     assert (answer["runs"], answer["done"]) == (4, 4)
-    assert "histories: cannot write" in answer["warnings"][0]
+    assert any("histories: cannot write" in warning for warning in answer["warnings"])
     table = pd.read_csv(tmp_path / answer["table"])
     assert len(table) == 4
     assert table["history"].isna().any()
     for file in table["history"].dropna():
         read_history(tmp_path / "outputs/cheap" / file)
-    code, out, err = run_slosh(tmp_path, *sweep(2, "--histories", "--json"))
+    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"))
     assert code == 0, err
     assert not pd.read_csv(tmp_path / answer["table"])["history"].isna().any()
 
@@ -194,7 +194,7 @@ STREAMS = {
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="streams of Linux")
 @pytest.mark.parametrize(("streams", "expected"), STREAMS.values(), ids=STREAMS)
 def test_streams_that_take_nothing_do_not_end_a_study(tmp_path: Path, streams: str, expected: int) -> None:
-    arguments = " ".join(f"'{word}'" for word in sweep(2, "--histories"))
+    arguments = " ".join(f"'{word}'" for word in sweep(4, "--histories"))
     start = f"'{sys.executable}' -c 'import sys; from slosh_cli.cli import main; sys.exit(main())'"
     run = subprocess.run(
         ["bash", "-c", f"{start} {arguments} {streams}"], cwd=tmp_path, capture_output=True, text=True, check=False
