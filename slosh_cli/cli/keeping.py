@@ -32,7 +32,8 @@ class Keeping:
         except Exception as error:  # of any library: the answer is there, and must be told
             if os.environ.get("SLOSH_DEBUG"):
                 traceback.print_exception(error)
-            system = error.strerror if isinstance(error, OSError) else None
+            first = error.__cause__ if isinstance(error.__cause__, OSError) else error
+            system = first.strerror if isinstance(first, OSError) else None
             kind = "" if isinstance(error, SloshError | OSError) else f"{type(error).__name__}: "
             self.failures.append(f"{what} could not be written: {kind}{system or error}")
 

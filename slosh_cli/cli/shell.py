@@ -1,6 +1,5 @@
 """The error shell around the commands: exceptions in, messages and exit codes out."""
 
-import errno
 import os
 import sys
 import traceback
@@ -18,9 +17,6 @@ from slosh_cli.errors import ScenarioError, SloshError
 
 DEBUG: Final = "SLOSH_DEBUG"
 """Environment variable: when set, an unexpected error shows its traceback."""
-
-_FULL: Final = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
-"""What a stream says that takes no more."""
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
@@ -64,8 +60,8 @@ def _run(words: list[str]) -> int:
 
 def _report(error: Exception, *, as_json: bool) -> ExitCode:
     """Tell the user of an error, once; returns the exit code that goes with it."""
-    if isinstance(error, OSError) and error.filename is None and error.errno in _FULL:
-        refused(error)  # help, which the command-line library prints itself; every file says its own name
+    if isinstance(error, OSError) and _comes_from_printing(error):
+        refused(error)
         return ExitCode.DONE
     if isinstance(error, typer.Abort):
         return _interrupted(as_json=as_json)
@@ -90,6 +86,14 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
     )
     _say_error(text, as_json, code="internal", message=message, where="")
     return ExitCode.NO_ANSWER
+
+
+def _comes_from_printing(error: OSError) -> bool:
+    """Whether the command-line library met the error, which prints its help itself and opens no files."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return trace is not None and trace.tb_frame.f_globals.get("__name__", "").partition(".")[0] in ("click", "typer")
 
 
 def _interrupted(*, as_json: bool) -> ExitCode:

@@ -80,11 +80,9 @@ def is_held(folder: Path) -> bool:
 
 def _sign(file: IO[str]) -> None:
     """Leave word of who holds the lock; a full disk is no reason to do without."""
-    with suppress(OSError):
-        file.seek(0)
-        file.truncate()
-        file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
-        file.flush()
+    with suppress(OSError):  # past Python's buffer, which would try again, and fail, when the file is closed
+        os.ftruncate(file.fileno(), 0)
+        os.write(file.fileno(), f"process {os.getpid()} on {socket.gethostname()}\n".encode())
 
 
 if sys.platform == "win32":
