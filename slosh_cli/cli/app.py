@@ -12,8 +12,8 @@ COMMANDS: Final = ("init", "check", "run", "sweep", "tank", "plot", "schema", "v
 """In the order of the help."""
 
 _EPILOG: Final = (
-    "Exit codes: 0 done, 1 a validation fell short, 2 the input is wrong or a file could not be written, "
-    "3 a run ended without an answer, 130 interrupted."
+    "Exit codes: 0 done, 1 a validation fell short, 2 the input is wrong, 3 a run ended without an answer, "
+    "130 interrupted."
 )
 
 

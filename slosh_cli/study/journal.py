@@ -46,7 +46,7 @@ class Journal:
     def __init__(self, path: Path, *, read_only: bool = False) -> None:
         self.path = path
         self._session = 0
-        with self._trouble("open"):
+        with self._trouble("read"):
             where = f"{path.absolute().as_uri()}?mode={'ro' if read_only else 'rwc'}"
             self._file = sqlite3.connect(where, uri=True, isolation_level=None)
             try:
