@@ -1,59 +1,97 @@
-"""The one way kernels are compiled: without the interpreter lock, cached on disk, never stale.
+"""The one way kernels are compiled: without the interpreter lock, kept on disk, never stale.
 
 numba notices a changed file but not a changed *callee* in another file, and would go on running the old
-machine code: a wrong number that looks right. So the cache lives in a folder named after a digest of every
-source file that a kernel can be made of; any change there starts a fresh folder.
+machine code: a wrong number that looks right. It also keeps kernels beside the sources, or wherever else it can
+write, when its folder cannot be written. So kernels are kept by `kernel_store`, under a digest of every source file
+that a kernel can be made of and of everything else that decides about the machine code; or they are not kept.
 """
 
 from __future__ import annotations
 
-import hashlib
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, Final, TypeVar, cast
 
+import llvmlite
 import numba
+import numpy as np
+from llvmlite import binding
+from numba.core import config
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+from slosh_cli.kernel_store import KernelStore, digest, source_files
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+_SETTINGS: Final = (
+    "OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX", "DISABLE_INTEL_SVML",
+    "USING_SVML", "CPU_NAME", "CPU_FEATURES",
+)  # fmt: skip
+"""Settings of numba that change the machine code."""
 
-def _digest_of_sources() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
+
+def _sources() -> str:
+    """The digest of the sources of kernels and of the compilers; empty where the sources cannot be read."""
     root = Path(__file__).parent
-    for source in sorted(root.rglob("*.py")):
-        text = source.read_bytes()
-        # kernels say so in their imports; the constants and types they use live in these packages
-        if source.parent.name in ("wagon", "track", "solver") or b"from slosh_cli.compiled import" in text:
-            digest.update(source.relative_to(root).as_posix().encode())
-            digest.update(text)
-    return digest.hexdigest()[:16]
+    try:
+        return digest(source_files(root), root, numba.__version__, llvmlite.__version__, np.__version__, sys.version)
+    except OSError:
+        return ""
 
 
-def _cache_home() -> Path:
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return Path(os.environ["NUMBA_CACHE_DIR"])
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "slosh" / "kernels"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "slosh" / "kernels"
+def _build() -> str:
+    """`SOURCES` with the processor and the settings that machine code is made for."""
+    machine = (binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten())
+    return digest((), Path(), SOURCES, machine, [repr(getattr(config, name, None)) for name in _SETTINGS])
 
 
-CACHE_FOLDER = _cache_home() / _digest_of_sources()
-numba.config.CACHE_DIR = str(CACHE_FOLDER)  # type: ignore[attr-defined]
+SOURCES: Final = _sources()
+"""Tells one build of the solver from another."""
+
+STORE: Final = KernelStore(_build() if SOURCES else "")
+
+
+_rebuild: Any = CompileResult._rebuild  # numba's own types end here
+
+
+class _Kept(NullCache):
+    """numba's view of `STORE` for one function."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._name = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        target_context.refresh()
+        kept = STORE.load(self._name, _key(sig, target_context.codegen()))
+        try:
+            return None if kept is None else _rebuild(target_context, *kept)
+        except Exception:  # made by a program that no longer fits, whatever it says
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        if not data.library.has_dynamic_globals and all(one.can_cache for one in data.lifted):
+            STORE.save(self._name, _key(sig, data.codegen), data._reduce(), dumps)
+
+
+def _key(signature: Any, codegen: Any) -> tuple[Any, ...]:
+    return signature, codegen.magic_tuple()
 
 
 def _compile(function: F, **options: Any) -> F:
     # without numba's memory manager (_nrt) a kernel cannot allocate: one that tries does not compile
     # (numba's type stubs know only the public options)
     jit: Any = numba.njit
-    return cast(
-        F, jit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **options)(function)
-    )
+    compiled = jit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **options)(function)
+    if compiled is not function:  # NUMBA_DISABLE_JIT leaves functions as they are
+        compiled._cache = _Kept(function)
+    return cast(F, compiled)
 
 
 def kernel(function: F) -> F:
-    """Compile `function`: nopython, GIL released, cached on disk, IEEE division, unable to allocate."""
+    """Compile `function`: nopython, GIL released, kept on disk, IEEE division, unable to allocate."""
     return _compile(function)
 
 
@@ -75,6 +113,14 @@ def part_kernel(function: F) -> F:
     return _compile(function, no_cpython_wrapper=True, forceinline=True)
 
 
-def is_cached() -> bool:
-    """True when the time loop was compiled before by this very version of the sources."""
-    return any(CACHE_FOLDER.rglob("*advance*.nbc"))
+def is_cached(name: str = "advance.advance") -> bool:
+    """True when the kernel `name` (MODULE.FUNCTION, by default the time loop) was compiled before by this very build.
+
+    A kernel is kept after the ones that it calls, and with them.
+    """
+    return bool(getattr(config, "DISABLE_JIT", False)) or STORE.holds(name)
+
+
+def not_kept() -> str:
+    """Why kernels cannot be kept for the next run; empty where they can."""
+    return STORE.trouble

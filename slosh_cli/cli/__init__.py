@@ -9,6 +9,7 @@ from collections.abc import Sequence
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
     _hurry()
+    _draw_without_windows()
     from slosh_cli.cli.shell import run
 
     return run(arguments)
@@ -24,3 +25,8 @@ def _hurry() -> None:
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
+
+
+def _draw_without_windows() -> None:
+    """Figures go to files: whatever kind of window matplotlib is told to open, or cannot, is no matter here."""
+    os.environ.pop("MPLBACKEND", None)

@@ -10,7 +10,7 @@ class ExitCode(IntEnum):
     FELL_SHORT = 1
     """A validation missed its stated tolerance."""
     BAD_INPUT = 2
-    """The user's input is wrong: scenario, option, file."""
+    """The user's input is wrong (scenario, option, file), or a file could not be written."""
     NO_ANSWER = 3
     """A run ended without an answer (its status says why), or the program itself failed."""
     INTERRUPTED = 130

@@ -60,9 +60,14 @@ def init(
 
 def _write_new(file: Path, text: str) -> None:
     try:
-        with file.open("x", encoding="utf-8", newline="\n") as new:
-            new.write(text)
+        new = file.open("x", encoding="utf-8", newline="\n")
     except FileExistsError as error:
         raise UsageError(f"{file} exists already; choose another name with -o FILE", str(file)) from error
     except OSError as error:
+        raise UsageError(f"cannot write {file}: {error.strerror or error}", str(file)) from error
+    try:
+        with new:
+            new.write(text)
+    except OSError as error:
+        file.unlink(missing_ok=True)
         raise UsageError(f"cannot write {file}: {error.strerror or error}", str(file)) from error

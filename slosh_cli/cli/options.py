@@ -28,7 +28,7 @@ OutputFolder = Annotated[
         "--output",
         "-o",
         metavar="DIR",
-        help="Folder for the files. Default: outputs/ and the scenario's name.",
+        help="Folder for the files. Default: outputs/, the scenario's name and what was --set.",
         show_default=False,
     ),
 ]

@@ -6,8 +6,9 @@ import numbers
 import os
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
 
@@ -22,17 +23,17 @@ def say(text: str) -> None:
 
 def note(text: str) -> None:
     """Print a line about the work, to stderr."""
-    typer.echo(text, err=True)
+    _to_stderr(text)
 
 
 def warn(text: str) -> None:
     """Print a warning, to stderr; coloured on a terminal."""
-    typer.secho(f"warning: {text}", err=True, fg="yellow")
+    _to_stderr(f"warning: {text}", "yellow")
 
 
 def complain(text: str) -> None:
     """Print an error, to stderr; coloured on a terminal."""
-    typer.secho(text, err=True, fg="red")
+    _to_stderr(text, "red")
 
 
 def say_json(value: Mapping[str, Any]) -> None:
@@ -70,16 +71,69 @@ def strict(value: Any) -> Any:
     raise TypeError(f"A value for JSON must be a plain Python value, but {type(value).__name__} was given.")
 
 
+_unheard: list[OSError] = []
+"""Why stdout took no more text, where that is a loss and not the reader's choice."""
+
+
+def open_streams() -> None:
+    """Put the null device where standard streams were closed (`>&-`): the work goes on, as with nobody listening.
+
+    Without it the next file that is opened would take the place of a stream, and what is printed would end in it.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free: this one
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  (lives as long as the process)
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+
+
+def flush_streams() -> OSError | None:
+    """Write out what waits; returns why not all of the answer could be told, None where it was.
+
+    Streams that refuse are left without a word to say, or the interpreter would complain at its end.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError as error:
+            if stream is sys.stdout:
+                refused(error)
+            else:
+                _silence(stream)
+    return _unheard.pop() if _unheard else None
+
+
 def close_stdout() -> None:
     """Send what follows nowhere: the reader of stdout (`head`, say) has gone, and that is no error."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
-    os.close(nowhere)
+    _silence(sys.stdout)
+
+
+def _silence(stream: TextIO) -> None:
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+
+
+def refused(error: OSError) -> None:
+    """Note that stdout takes no more: a loss, unless its reader has gone by choice."""
+    if not isinstance(error, BrokenPipeError):
+        _unheard[:] = [error]
+    close_stdout()
 
 
 def _to_stdout(text: str) -> None:
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
-    except BrokenPipeError:
-        close_stdout()
+    except OSError as error:
+        refused(error)
+
+
+def _to_stderr(text: str, colour: str | None = None) -> None:
+    try:
+        typer.secho(text, err=True, fg=colour)
+    except OSError:  # nobody can be told
+        _silence(sys.stderr)

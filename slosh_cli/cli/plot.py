@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.keeping import Keeping
 from slosh_cli.cli.output import say
 
 
@@ -31,13 +32,15 @@ def plot(
     Each is written as PNG and as SVG.
     """
     from slosh_cli.report.figures import draw_run
-    from slosh_cli.results.files import staging
+    from slosh_cli.report.record import FIGURE_NAMES, FORMATS
+    from slosh_cli.results.files import try_targets
     from slosh_cli.results.hdf5 import read_history
 
     history = read_history(history_file)
-    folder = output or history_file.parent
-    with staging(folder) as stage:
-        drawn = draw_run(history, stage)
-    for file in drawn:
-        say(str(folder / file.name))
-    return ExitCode.DONE
+    folder, keeping = output or history_file.parent, Keeping()
+    try_targets(folder, [f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS])
+    for name in FIGURE_NAMES:
+        with keeping.part(f"the figure {folder / name}"):
+            for file in draw_run(history, folder, names=(name,)):
+                say(str(file))
+    return keeping.told()

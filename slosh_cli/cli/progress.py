@@ -17,12 +17,22 @@ COMPILE_SECONDS: Final = 40
 """What compiling the time loop takes on an ordinary machine, in s."""
 
 
-def announce_compilation() -> None:
-    """Say that this first run takes longer, when the time loop has not been compiled yet."""
-    from slosh_cli.compiled import is_cached
+def announce_compilation(
+    what: str = "the solver", seconds: int = COMPILE_SECONDS, kernel: str = "advance.advance"
+) -> None:
+    """Say that this run takes longer when `kernel` was not compiled before, and whether it is once."""
+    from slosh_cli.compiled import is_cached, not_kept
 
-    if not is_cached():
-        note(f"Compiling the solver, once: about {COMPILE_SECONDS} s. Later runs start at once.")
+    if is_cached(kernel):
+        return
+    trouble = not_kept()
+    if not trouble:
+        note(f"Compiling {what}, once: about {seconds} s. Later runs start at once.")
+    else:
+        note(
+            f"Compiling {what} in memory, for this run only: about {seconds} s. It cannot be kept: {trouble}. Set "
+            "XDG_CACHE_HOME or NUMBA_CACHE_DIR to a folder of yours, and later runs start at once."
+        )
 
 
 class RunProgress:

@@ -1,13 +1,14 @@
 """`slosh run`: one stop, its history, its summary and its figures."""
 
-import os
 import threading
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile
 from slosh_cli.cli.output import complain, say_json, warn
 
@@ -33,50 +34,69 @@ def run(
 ) -> ExitCode:
     """Simulate one stop: history (HDF5), summary (CSV) and figures.
 
-    The files of an earlier run in the same folder are replaced once the new ones are whole.
+    Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
+    of the same scenario, or with -o any run in that folder, is replaced.
     """
     from slosh_cli.cli.reading import read_scenario
-    from slosh_cli.cli.summary import show_run
+    from slosh_cli.cli.summary import show_files, show_run
+    from slosh_cli.results.files import try_targets
     from slosh_cli.results.result import Status
 
     scenario = read_scenario(scenario_file, overrides)
-    folder = output or Path("outputs") / scenario.name
-    _check_folder(folder)
+    folder = output or _default(scenario, overrides)
+    try_targets(folder, _files())
     result = _simulate(scenario)
-    files = write_run(result, folder, figures=not no_figures)
-    stopped = result.status is Status.STOPPED
+    stopped, keeping = result.status is Status.STOPPED, Keeping()
+    if not as_json:
+        show_run(result)
+    files = write_run(result, folder, keeping, figures=not no_figures)
     if as_json:
-        say_json(result.summary() | {"files": files})
+        answer = result.summary()
+        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
         for warning in result.warnings:
             warn(warning)
         if not stopped:
             complain(f"{result.status}: {result.reason} {result.status.remedy}")
     else:
-        show_run(result, files)
-    return ExitCode.DONE if stopped else ExitCode.NO_ANSWER
+        show_files(files)
+    return keeping.told(ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
 
 
-def write_run(result: "Result", folder: Path, *, figures: bool) -> dict[str, Any]:
-    """Write all files of a run into `folder`, together; returns where they lie.
+def write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: bool) -> dict[str, Any]:
+    """Write history and summary of a run into `folder`, then its figures; returns where those lie that could be.
 
-    Files of an earlier run stay as they were until the new ones are whole.
+    What an earlier run left in `folder` goes.
     """
-    from slosh_cli.report.figures import FIGURES, draw_run
-    from slosh_cli.report.saving import FORMATS
-    from slosh_cli.results.files import staging
+    from slosh_cli.report.record import FIGURE_NAMES
     from slosh_cli.results.hdf5 import write_history
     from slosh_cli.results.tables import write_summary
 
-    earlier = [f"{name}.{suffix}" for name in FIGURES for suffix in FORMATS]
-    with staging(folder, owned=earlier) as stage:
-        write_history(result, stage / HISTORY)
-        write_summary(result, stage / SUMMARY)
-        drawn = draw_run(result, stage) if figures else []
-    return {
-        "history": str(folder / HISTORY),
-        "summary": str(folder / SUMMARY),
-        "figures": [str(folder / file.name) for file in drawn],
-    }
+    def draw(name: str, folder: Path) -> None:
+        from slosh_cli.report.figures import draw_run
+
+        draw_run(result, folder, names=(name,))
+
+    numbers = {SUMMARY: partial(write_summary, result), HISTORY: partial(write_history, result)}
+    drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
+    files = keeping.keep(folder, _files(), numbers, drawn)
+    return by_kind(files, history=HISTORY, summary=SUMMARY)
+
+
+def _files() -> list[str]:
+    """Names of all files that a run may write."""
+    from slosh_cli.report.record import FIGURE_NAMES, FORMATS
+
+    return [HISTORY, SUMMARY, *(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)]
+
+
+def _default(scenario: "Scenario", overrides: list[str] | None) -> Path:
+    """The folder of a run that was given none: of its own, unless what lies there is a run of the same scenario."""
+    from slosh_cli.results.hdf5 import is_of
+
+    def fits(folder: Path) -> bool:
+        return not (folder / HISTORY).exists() or is_of(folder / HISTORY, scenario)
+
+    return free_folder(default_folder(scenario.name, overrides), fits)
 
 
 def _simulate(scenario: "Scenario") -> "Result":
@@ -92,14 +112,3 @@ def _simulate(scenario: "Scenario") -> "Result":
         except KeyboardInterrupt:
             cancel.set()
             raise
-
-
-def _check_folder(folder: Path) -> None:
-    """Refuse a folder that cannot be written before the run, not after it. Raises FileError."""
-    from slosh_cli.results.files import FileError
-
-    nearest = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    if not nearest.is_dir():
-        raise FileError(f"cannot write into {folder}: {nearest} is not a folder", str(folder))
-    if not os.access(nearest, os.W_OK | os.X_OK):
-        raise FileError(f"cannot write into {folder}: no permission in {nearest}", str(folder))

@@ -12,7 +12,7 @@ import typer
 
 from slosh_cli.cli.app import build
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import close_stdout, complain, say_json
+from slosh_cli.cli.output import close_stdout, complain, flush_streams, open_streams, refused, say_json
 from slosh_cli.errors import ScenarioError, SloshError
 
 DEBUG: Final = "SLOSH_DEBUG"
@@ -23,20 +23,31 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     before_dashes = words[: words.index("--")] if "--" in words else words
+    open_streams()
     _forgive_encodings()
     try:
-        return _run(words)
+        code = _run(words)
     except Exception as error:  # the last resort: no traceback may reach the user
-        return _report(error, as_json="--json" in before_dashes)
+        code = _report(error, as_json="--json" in before_dashes)
     except KeyboardInterrupt:
-        return _interrupted(as_json="--json" in before_dashes)
+        code = _interrupted(as_json="--json" in before_dashes)
+    return _told(code)
+
+
+def _told(code: int) -> int:
+    """The exit code, once the answer is out; one that could not be told is not a success."""
+    refusal = flush_streams()
+    if refusal is None:
+        return code
+    complain(f"error: cannot write to standard output: {refusal.strerror or refusal}")
+    flush_streams()
+    return code or ExitCode.BAD_INPUT
 
 
 def _run(words: list[str]) -> int:
     """Run one command; a broken pipe on the way is the reader's choice and no error."""
     try:
         code = typer.main.get_command(build(*words[:1])).main(args=words, prog_name="slosh", standalone_mode=False)
-        sys.stdout.flush()
     except (SystemExit, BrokenPipeError) as end:
         if isinstance(end, BrokenPipeError) or isinstance(end.__context__, OSError):
             close_stdout()
@@ -49,6 +60,9 @@ def _run(words: list[str]) -> int:
 
 def _report(error: Exception, *, as_json: bool) -> ExitCode:
     """Tell the user of an error, once; returns the exit code that goes with it."""
+    if isinstance(error, OSError) and _comes_from_printing(error):
+        refused(error)
+        return ExitCode.DONE
     if isinstance(error, typer.Abort):
         return _interrupted(as_json=as_json)
     if isinstance(error, SloshError):
@@ -72,6 +86,14 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
     )
     _say_error(text, as_json, code="internal", message=message, where="")
     return ExitCode.NO_ANSWER
+
+
+def _comes_from_printing(error: OSError) -> bool:
+    """Whether the command-line library met the error, which prints its help itself and opens no files."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return trace is not None and trace.tb_frame.f_globals.get("__name__", "").partition(".")[0] in ("click", "typer")
 
 
 def _interrupted(*, as_json: bool) -> ExitCode:

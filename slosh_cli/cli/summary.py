@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-def show_run(result: Result, files: Mapping[str, Any]) -> None:
-    """Print what a run found, what it warns of and where its files lie, to stdout."""
+def show_run(result: Result) -> None:
+    """Print what a run found and what it warns of, to stdout."""
     from rich.text import Text
 
     stopped = result.status is Status.STOPPED
@@ -23,7 +23,11 @@ def show_run(result: Result, files: Mapping[str, Any]) -> None:
     alarms = [Text(line, style="bold red") for line in lines]
     alarms += [Text(f"warning: {warning}", style="bold yellow") for warning in result.warnings]
     show(_facts(result), "", _wheels(result), *([""] if alarms else []), *alarms)
-    say(_where(files))  # past the table's line breaking: a path is copied from here
+
+
+def show_files(files: Mapping[str, Any]) -> None:
+    """Print where the files of a run lie, past the line breaking of tables: a path is copied from here."""
+    say(_where(files))
 
 
 def _facts(result: Result) -> "Table":
@@ -114,7 +118,7 @@ def _number(value: float | None, form: str, unit: str = "") -> str:
 
 
 def _where(files: Mapping[str, Any]) -> str:
-    lines = [f"\n  history  {files['history']}", f"  summary  {files['summary']}"]
+    lines = [""] + [f"  {kind}  {files[kind]}" for kind in ("history", "summary") if kind in files]
     figures = [Path(file) for file in files["figures"]]
     if figures:
         names = ", ".join(dict.fromkeys(file.stem for file in figures))

@@ -67,7 +67,7 @@ StudyFolder = Annotated[
         "--output",
         "-o",
         metavar="DIR",
-        help="Folder of the study. Default: outputs/ and the study's name.",
+        help="Folder of the study. Default: outputs/, the study's name and what was --set.",
         show_default=False,
     ),
 ]
@@ -111,18 +111,18 @@ def sweep(
 ) -> ExitCode:
     """Run a grid of stops and compare liquid with solid (Figure 3).
 
-    Every finished stop is kept at once: the same command continues a study that was interrupted, and a study that
-    has changed computes only what is new.
+    Every finished stop is kept at once: the same command continues a study that was interrupted, and one that was
+    extended computes only what is new. Without -o another study of the same name gets a folder with a number.
     """
     began = time.perf_counter()
     for variable in ONE_THREAD:
         os.environ[variable] = "1"
-    from slosh_cli.cli.sweep_task import Task, estimate, run
+    from slosh_cli.cli.sweep_task import Task, default_folder_of, estimate, run
     from slosh_cli.study.build import Wishes, build
 
     if jobs is not None and cluster is not None:
         raise UsageError("--jobs is for this machine; a cluster has its own threads: leave one of them out", "--jobs")
     study = build(Wishes(scenario_file, overrides or (), speeds, torques, vary or (), liquids, histories))
-    folder = output or Path("outputs") / study.name
+    folder = output or default_folder_of(study, overrides or ())
     task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began)
     return estimate(task) if dry_run else run(task)

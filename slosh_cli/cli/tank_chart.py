@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.keeping import Keeping, by_kind, default_folder, files_text
 from slosh_cli.cli.output import say, say_json, warn
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.errors import UsageError, ValueRefused
+from slosh_cli.results.files import try_targets
 from slosh_cli.study.axis import values_of
 from slosh_cli.tank.chart import FillChart, fill_chart
 
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
 
 TABLE: Final = "fill_chart.csv"
+_FILES: Final = (TABLE, "fill_chart.png", "fill_chart.svg")
+ALL: Final = "0.05:0.95:0.05"
+"""Fillings that are shown when none are asked for."""
 LEAST, MOST = 0.02, 0.98
 """Fillings that the finite elements can represent."""
 
@@ -33,20 +38,26 @@ def run_chart(
     """Compute, write and tell."""
     scenario = read_any_scenario(scenario_file, overrides)
     levels = read_fills(fills)
-    folder = output or Path("outputs") / scenario.name
+    folder = output or default_folder(
+        scenario.name, [*(overrides or ()), *([f"fills={fills}"] if fills != ALL else [])]
+    )
+    try_targets(folder, _FILES)
     with _progress() as progress:
         chart = fill_chart(scenario.tank, levels, modes or scenario.tank.modes, progress)
     skipped = [f"filling {level:g} is left out: {reason}" for level, reason in chart.skipped.items()]
-    files = _write(scenario, chart, folder)
-    if as_json:
-        rows = [row | {"n": int(row["n"])} for row in _rows(chart)]
-        say_json({"name": scenario.name, "rows": rows, "warnings": skipped, "files": files})
-    else:
+    rows, keeping = [row | {"n": int(row["n"])} for row in _rows(chart)], Keeping()
+    if not rows:
+        raise UsageError(f"no filling could be represented: {'; '.join(chart.skipped.values())}", "--fills")
+    if not as_json:
         say(f"{scenario.name}: {len(levels) - len(skipped)} fillings, n = {', '.join(map(str, chart.numbers))}")
-        say(f"\n  table    {files['table']}\n  figures  {', '.join(files['figures'])}")
+    files = _write(scenario, chart, rows, folder, keeping)
+    if as_json:
+        say_json({"name": scenario.name, "rows": rows, "warnings": [*skipped, *keeping.failures], "files": files})
+    else:
+        say(files_text(files))
     for line in skipped:
         warn(line)
-    return ExitCode.DONE
+    return keeping.told()
 
 
 def read_fills(text: str) -> list[float]:
@@ -79,20 +90,20 @@ def _rows(chart: FillChart) -> list[dict[str, float]]:
     ]
 
 
-def _write(scenario: "Scenario | TankScenario", chart: FillChart, folder: Path) -> dict[str, Any]:
-    from slosh_cli.report.tank_figures import Heading, draw_chart
-    from slosh_cli.results.files import staging
+def _write(
+    scenario: "Scenario | TankScenario", chart: FillChart, rows: list[dict[str, Any]], folder: Path, keeping: Keeping
+) -> dict[str, Any]:
     from slosh_cli.results.tables import write_table
 
-    rows = [row | {"n": int(row["n"])} for row in _rows(chart)]
-    if not rows:
-        raise UsageError(f"no filling could be represented: {'; '.join(chart.skipped.values())}", "--fills")
-    tank = scenario.tank
-    heading = Heading("Slosh modes against the filling", f"{scenario.name}: {tank.shape}, {tank.length:g} m long")
-    with staging(folder) as stage:
-        write_table(rows, stage / TABLE)
-        drawn = draw_chart(chart, heading, tank.fill, stage)
-    return {"table": str(folder / TABLE), "figures": [str(folder / file.name) for file in drawn]}
+    def draw(folder: Path) -> None:
+        from slosh_cli.report.tank_figures import Heading, draw_chart
+
+        tank = scenario.tank
+        heading = Heading("Slosh modes against the filling", f"{scenario.name}: {tank.shape}, {tank.length:g} m long")
+        draw_chart(chart, heading, tank.fill, folder)
+
+    files = keeping.keep(folder, _FILES, {TABLE: lambda path: write_table(rows, path)}, {"fill_chart": draw})
+    return by_kind(files, table=TABLE)
 
 
 @contextmanager

@@ -1,20 +1,24 @@
 """What `slosh tank coefficients` computes, prints and writes."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.keeping import Keeping, by_kind, files_text
 from slosh_cli.cli.output import say, say_json, show, warn
 from slosh_cli.cli.reading import read_any_scenario
+from slosh_cli.results.files import try_targets
 from slosh_cli.tank.coefficients import SloshMode, tank_modes
 from slosh_cli.tank.comparison import ModeComparison, compare_modes, impossible_fractions
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.inertia import stokes_joukowski_inertia
 from slosh_cli.tank.load import FrozenLoad, frozen_load
-from slosh_cli.tank.longitudinal import LongitudinalModes
+from slosh_cli.tank.longitudinal import LongitudinalMode, LongitudinalModes
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,6 +26,7 @@ if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
 
 TABLE: Final = "coefficients.csv"
+_PICTURE: Final = re.compile(r"mode_\d+\.(png|svg)")
 COLUMNS: Final = {
     "omega_rad_s": "frequency",
     "lambda_1_kg": "lambda_1",
@@ -50,17 +55,20 @@ def show_coefficients(
 ) -> ExitCode:
     """Compute, write where a folder is given, and tell."""
     scenario = read_any_scenario(scenario_file, overrides)
-    found = find(scenario, modes)
-    files = _write(scenario, found, output) if output is not None else {}
+    if output is not None:
+        try_targets(output, (TABLE,))
+    found, keeping = find(scenario, modes), Keeping()
+    if not as_json:
+        _show(found)
+    files = _write(scenario, found, output, keeping) if output is not None else {}
     if as_json:
-        say_json(as_dict(found) | {"files": files})
+        answer = as_dict(found)
+        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
         for warning in found.warnings:
             warn(warning)
-    else:
-        _show(found)
-        if files:
-            say(f"\n  table    {files['table']}\n  figures  {', '.join(files['figures'])}")
-    return ExitCode.DONE
+    elif files:
+        say(files_text(files))
+    return keeping.told()
 
 
 def find(scenario: "Scenario | TankScenario", modes: int | None) -> Findings:
@@ -170,21 +178,22 @@ def _numbers(mode: SloshMode, fraction: float) -> list[str]:
     ]
 
 
-def _write(scenario: "Scenario | TankScenario", found: Findings, folder: Path) -> dict[str, Any]:
-    """Table of all modes and a picture of each, together."""
-    from slosh_cli.report.tank_figures import Heading, draw_mode
-    from slosh_cli.results.files import staging
+def _write(scenario: "Scenario | TankScenario", found: Findings, folder: Path, keeping: Keeping) -> dict[str, Any]:
+    """Table of all modes, then a picture of each."""
     from slosh_cli.results.tables import write_table
+
+    def draw(mode: LongitudinalMode, folder: Path) -> None:
+        from slosh_cli.report.tank_figures import Heading, draw_mode
+
+        tank = scenario.tank
+        words = f"{found.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
+        draw_mode(mode, tank, Heading(f"Slosh mode n = {mode.n}", f"{words}{mode.frequency:.4g} rad/s"), folder)
 
     answer = as_dict(found)
     rows = [{"source": "computed", **row} for row in answer["modes"]]
     rows += [{"source": "given", **row} for row in answer["given"]]
-    drawn: list[Path] = []
-    with staging(folder) as stage:
-        write_table(rows, stage / TABLE)
-        for mode in found.solved.modes:
-            tank = scenario.tank
-            words = f"{found.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
-            heading = Heading(f"Slosh mode n = {mode.n}", f"{words}{mode.frequency:.4g} rad/s")
-            drawn += draw_mode(mode, tank, heading, stage)
-    return {"table": str(folder / TABLE), "figures": [str(folder / file.name) for file in drawn]}
+    drawn = {f"mode_{mode.n}": partial(draw, mode) for mode in found.solved.modes}
+    names = [TABLE, *(f"{name}.{suffix}" for name in drawn for suffix in ("png", "svg"))]
+    earlier = [file.name for file in folder.glob("mode_*.*") if _PICTURE.fullmatch(file.name)]
+    owned = [*names, *(name for name in earlier if name not in names)]
+    return by_kind(keeping.keep(folder, owned, {TABLE: lambda path: write_table(rows, path)}, drawn), table=TABLE)

@@ -1,14 +1,19 @@
 """What `slosh tank excite` reads, computes, prints and writes."""
 
+import hashlib
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain, note, say, say_json, show, warn
+from slosh_cli.cli.keeping import Keeping, by_kind, default_folder, files_text, free_folder
+from slosh_cli.cli.output import complain, say, say_json, show, warn
+from slosh_cli.cli.progress import announce_compilation
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.errors import UsageError, ValueRefused
+from slosh_cli.results.files import try_targets
 from slosh_cli.scenario import parse_quantity
 
 if TYPE_CHECKING:
@@ -18,6 +23,11 @@ if TYPE_CHECKING:
 
 TABLE: Final = "excite.csv"
 HISTORY: Final = "excite.h5"
+_FILES: Final = (TABLE, HISTORY, "excite.png", "excite.svg")
+_KERNELS: Final = {
+    "modal": "excite_kernels.modal_history",
+    "shallow-water": "excite_kernels.cells_history",
+}
 COLUMNS: Final = ("time_s", "deceleration_m_s2")
 MOST_ROWS: Final = 1_000_000
 LARGEST: Final = 1000.0
@@ -43,8 +53,11 @@ def run_excitation(
     scenario = read_any_scenario(scenario_file, overrides)
     duration, interval = _times(wishes)
     deceleration = _deceleration(wishes, duration)
-    folder = output or Path("outputs") / scenario.name
-    _announce()
+    settings = _settings(wishes)
+    folder = output or _default(scenario, overrides, settings)
+    try_targets(folder, _FILES)
+    if scenario.tank.liquid.model in _KERNELS:
+        announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
     from slosh_cli.solver.excite import excite
 
     found = excite(scenario.tank, deceleration, duration, interval)
@@ -53,17 +66,19 @@ def run_excitation(
         return ExitCode.NO_ANSWER
     warnings = _warnings(scenario, found)
     answer = summary(scenario, found) | {"warnings": warnings}
-    files = _write(scenario, found, answer, folder)
+    if not as_json:
+        _show(scenario, found, warnings)
+    keeping = Keeping()
+    files = _write(scenario, found, answer | {"settings": settings}, folder, keeping)
     if as_json:
-        say_json(answer | {"files": files})
+        say_json(answer | {"warnings": [*warnings, *keeping.failures], "files": files})
         for warning in warnings:
             warn(warning)
     else:
-        _show(scenario, found, warnings, files)
+        say(files_text(files))
     if found.reason:
         complain(f"failed: {found.reason}. {REMEDY}")
-        return ExitCode.NO_ANSWER
-    return ExitCode.DONE
+    return keeping.told(ExitCode.NO_ANSWER if found.reason else ExitCode.DONE)
 
 
 def summary(scenario: "Scenario | TankScenario", found: "Excitation") -> dict[str, Any]:
@@ -145,14 +160,6 @@ def _positive(text: str, option: str) -> float:
     return value
 
 
-def _announce() -> None:
-    """Say that this first time takes longer, when the loops have not been compiled yet."""
-    from slosh_cli.compiled import CACHE_FOLDER
-
-    if not any(CACHE_FOLDER.rglob("*excite*.nbc")):
-        note("Compiling the liquid, once: about 10 s. Later it starts at once.")
-
-
 def _room(scenario: "Scenario | TankScenario") -> float:
     return scenario.tank.height * (1.0 - scenario.tank.fill)
 
@@ -175,13 +182,26 @@ def _warnings(scenario: "Scenario | TankScenario", found: "Excitation") -> list[
     return warnings
 
 
+def _settings(wishes: Wishes) -> str:
+    """What an excitation is told apart by, next to its scenario."""
+    content = None if wishes.table is None else hashlib.sha256(wishes.table.read_bytes()).hexdigest()
+    return json.dumps([wishes.deceleration, wishes.ramp, wishes.duration, wishes.interval, content])
+
+
+def _default(scenario: "Scenario | TankScenario", overrides: Sequence[str] | None, settings: str) -> Path:
+    from slosh_cli.results.hdf5 import is_of
+
+    def fits(folder: Path) -> bool:
+        return not (folder / HISTORY).exists() or is_of(folder / HISTORY, scenario, settings)
+
+    return free_folder(default_folder(scenario.name, overrides), fits)
+
+
 def _write(
-    scenario: "Scenario | TankScenario", found: "Excitation", answer: dict[str, Any], folder: Path
+    scenario: "Scenario | TankScenario", found: "Excitation", facts: dict[str, Any], folder: Path, keeping: Keeping
 ) -> dict[str, Any]:
-    """Write table, history and figure together; returns where they lie."""
-    from slosh_cli.report.tank_figures import Heading, draw_excitation
+    """Write table and history together, then the figure; returns where those lie that could be written."""
     from slosh_cli.results.channels import CHANNELS, Channel
-    from slosh_cli.results.files import staging
     from slosh_cli.results.hdf5 import write_excitation
     from slosh_cli.results.tables import write_table
 
@@ -195,18 +215,19 @@ def _write(
     rows = [dict(zip(("time_s", *columns), map(float, row), strict=True)) for row in values]
     channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
     channels |= dict(columns.values())
-    facts = {key: "\n".join(value) if isinstance(value, list) else value for key, value in answer.items()}
-    with staging(folder) as stage:
-        write_table(rows, stage / TABLE)
-        write_excitation(scenario, found.time, channels, facts, stage / HISTORY)
-        drawn = draw_excitation(
-            found, Heading("Tank under deceleration", _words(scenario, found)), _room(scenario), stage
-        )
-    return {
-        "table": str(folder / TABLE),
-        "history": str(folder / HISTORY),
-        "figures": [str(folder / file.name) for file in drawn],
+    facts = {key: "\n".join(value) if isinstance(value, list) else value for key, value in facts.items()}
+
+    def draw(folder: Path) -> None:
+        from slosh_cli.report.tank_figures import Heading, draw_excitation
+
+        heading = Heading("Tank under deceleration", _words(scenario, found))
+        draw_excitation(found, heading, _room(scenario), folder)
+
+    numbers: dict[str, Callable[[Path], object]] = {
+        TABLE: lambda path: write_table(rows, path),
+        HISTORY: lambda path: write_excitation(scenario, found.time, channels, facts, path),
     }
+    return by_kind(keeping.keep(folder, _FILES, numbers, {"excite": draw}), table=TABLE, history=HISTORY)
 
 
 def _words(scenario: "Scenario | TankScenario", found: "Excitation") -> str:
@@ -217,9 +238,7 @@ def _words(scenario: "Scenario | TankScenario", found: "Excitation") -> str:
     )
 
 
-def _show(
-    scenario: "Scenario | TankScenario", found: "Excitation", warnings: Sequence[str], files: dict[str, Any]
-) -> None:
+def _show(scenario: "Scenario | TankScenario", found: "Excitation", warnings: Sequence[str]) -> None:
     from rich.table import Table
     from rich.text import Text
 
@@ -239,4 +258,3 @@ def _show(
         table.add_row(*row)
     alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in warnings]
     show(table, *([""] if alarms else []), *alarms)
-    say(f"\n  table    {files['table']}\n  history  {files['history']}\n  figures  {', '.join(files['figures'])}")

@@ -2,12 +2,15 @@
 
 import sys
 from collections.abc import Sequence
+from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.keeping import OUTPUTS, Keeping, by_kind
 from slosh_cli.cli.options import AsJson
 from slosh_cli.cli.output import note, say, say_json, show
 
@@ -18,7 +21,9 @@ if TYPE_CHECKING:
     from slosh_cli.validation.data_file import CaseData
 
 REPORT: Final = "report.md"
-FOLDER: Final = Path("outputs") / "validation"
+FOLDER: Final = OUTPUTS / "validation"
+_LONGEST: Final = 80
+"""Characters of a folder's name that names the cases."""
 
 
 def register(app: typer.Typer) -> None:
@@ -39,7 +44,7 @@ def validate(
             "--output",
             "-o",
             metavar="DIR",
-            help="Folder for report and figures. Default: outputs/validation.",
+            help="Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs.",
             show_default=False,
         ),
     ] = None,
@@ -48,6 +53,7 @@ def validate(
 
     Closed forms, quadratures, published numbers, other codes. Exit code 1 when a case misses its stated tolerance.
     """
+    from slosh_cli.results.files import try_targets
     from slosh_cli.validation.registry import chosen, left_out
 
     cases = chosen(names or [])
@@ -55,37 +61,55 @@ def validate(
     if list_only:
         _list(cases, missing, as_json=as_json)
         return ExitCode.DONE
+    folder = output or default_folder(names, cases)
+    try_targets(folder, (REPORT, *(f"{data.name}.{suffix}" for data in cases for suffix in ("png", "svg"))))
     results = _run(cases)
-    files = write_validation(results, missing, output or FOLDER)
+    if not as_json:
+        _show(results, missing, detailed=bool(names))
+    keeping = Keeping()
+    files = write_validation(results, missing, folder, keeping)
     if as_json:
         say_json(
             {
                 "cases": [_plain(result) for result in results],
                 "left_out": [data.name for data in missing],
                 "files": files,
+                **({"warnings": keeping.failures} if keeping.failures else {}),
             }
         )
-    else:
-        _show(results, missing, detailed=bool(names))
+    elif "report" in files:
         say(f"  report   {files['report']}")
-    return ExitCode.DONE if all(result.passed for result in results) else ExitCode.FELL_SHORT
+    return keeping.told(ExitCode.DONE if all(result.passed for result in results) else ExitCode.FELL_SHORT)
 
 
-def write_validation(results: "Sequence[CaseResult]", missing: "Sequence[CaseData]", folder: Path) -> dict[str, Any]:
-    """Write the report and a figure per case into `folder`, together; returns where they lie."""
-    from slosh_cli.report.validation_figures import draw_case
-    from slosh_cli.results.files import staging
+def default_folder(names: Sequence[str] | None, cases: "Sequence[CaseData]") -> Path:
+    """The folder of a report that was given none: a part of the cases does not replace the report of all."""
+    if not names:
+        return FOLDER
+    told = "+".join(data.name for data in cases)
+    short = f"{len(cases)}-cases-{sha256(told.encode()).hexdigest()[:8]}"
+    return FOLDER / (told if len(told) <= _LONGEST else short)
+
+
+def write_validation(
+    results: "Sequence[CaseResult]", missing: "Sequence[CaseData]", folder: Path, keeping: Keeping
+) -> dict[str, Any]:
+    """Write the report into `folder`, then a figure per case; returns where those lie that could be written."""
+    from slosh_cli.results.files import write_text
     from slosh_cli.validation.markdown import report
     from slosh_cli.version import __version__
 
-    figures: list[Path] = []
-    with staging(folder) as stage:
-        for result in results:
-            if result.chart is not None:
-                figures += draw_case(result.name, result.data.title, result.chart, stage)
-        text = report(results, missing, f"slosh {__version__}: validation")
-        (stage / REPORT).write_text(text, encoding="utf-8")
-    return {"report": str(folder / REPORT), "figures": [str(folder / file.name) for file in figures]}
+    def draw(result: "CaseResult", folder: Path) -> None:
+        from slosh_cli.report.validation_figures import draw_case
+
+        if result.chart is not None:
+            draw_case(result.name, result.data.title, result.chart, folder)
+
+    text = report(results, missing, f"slosh {__version__}: validation")
+    drawn = {result.name: partial(draw, result) for result in results if result.chart is not None}
+    owned = [REPORT, *(f"{result.name}.{suffix}" for result in results for suffix in ("png", "svg"))]
+    numbers = {REPORT: lambda path: write_text(text, path)}
+    return by_kind(keeping.keep(folder, owned, numbers, drawn), report=REPORT)
 
 
 def _run(cases: "Sequence[CaseData]") -> "list[CaseResult]":

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from slosh_cli.report.record import (
+    FIGURE_NAMES,
     Record,
     caption,
     conditions,
@@ -39,8 +40,10 @@ REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
 ALARM: Final = "#a50f15"
 
 
-def draw_run(record: Record, folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
-    """Draw every figure that suits the run into `folder`; returns the files, one per figure and format.
+def draw_run(
+    record: Record, folder: Path, formats: Sequence[str] = FORMATS, names: Sequence[str] = FIGURE_NAMES
+) -> list[Path]:
+    """Draw those of the figures `names` that suit the run into `folder`; returns the files, one per figure and format.
 
     Each file appears whole or not at all. Raises FileError when one cannot be written.
     """
@@ -48,7 +51,7 @@ def draw_run(record: Record, folder: Path, formats: Sequence[str] = FORMATS) -> 
         return [
             file
             for name, draw in FIGURES.items()
-            if name != "slosh" or has_liquid(record)
+            if name in names and (name != "slosh" or has_liquid(record))
             for file in save(draw(record), folder, name, formats)
         ]
 

@@ -10,9 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from slosh_cli.results.files import replacing
+from slosh_cli.report import record
+from slosh_cli.results.files import FileError, replacing
 
-FORMATS: Final = ("png", "svg")
+FORMATS: Final = record.FORMATS
 
 INK: Final = "#222222"
 MUTED: Final = "#777777"
@@ -45,7 +46,7 @@ def save(figure: Figure, folder: Path, name: str, formats: Sequence[str] = FORMA
     """Write a figure into `folder`, a file per format; returns the files. Each appears whole or not at all.
 
     The layout, a third of the work, is done once; `Figure.savefig` would do it for every format.
-    Raises FileError when a file cannot be written.
+    Raises FileError when a file cannot be written, once the others are.
     """
     # matplotlib's writers have no types
     png: Any = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
@@ -54,11 +55,17 @@ def save(figure: Figure, folder: Path, name: str, formats: Sequence[str] = FORMA
         engine.execute(figure)
         figure.set_layout_engine("none")
     files = [folder / f"{name}.{suffix}" for suffix in formats]
+    refusal: FileError | None = None
     for file, suffix in zip(files, formats, strict=True):
-        with replacing(file) as temporary:
-            if suffix == "svg":
-                svg: Any = FigureCanvasSVG(figure)
-                svg.print_svg(temporary, metadata={"Date": None})
-            else:
-                png.print_png(temporary)
+        try:
+            with replacing(file) as temporary:
+                if suffix == "svg":
+                    svg: Any = FigureCanvasSVG(figure)
+                    svg.print_svg(temporary, metadata={"Date": None})
+                else:
+                    png.print_png(temporary)
+        except FileError as error:
+            refusal = refusal or error
+    if refusal is not None:
+        raise refusal
     return files

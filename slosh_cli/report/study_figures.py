@@ -26,6 +26,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from slosh_cli.report import figures
 from slosh_cli.report.label_places import spread
 from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Status
 
 NAME: Final = "braking_distance"
@@ -86,15 +87,21 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
     """Draw one figure per page into `folder`, `braking_distance` and a number where there are several.
 
     Returns the files. Each appears whole or not at all; those of an earlier study that had more are removed then.
-    Raises FileError when one cannot be written.
+    Raises FileError when one cannot be written, once the others are.
     """
     files = []
+    refusal: FileError | None = None
     with styled():
         for number, page in enumerate(pages, start=1):
             name = NAME if len(pages) == 1 else f"{NAME}_{number}"
-            files += save(braking_distance(page), folder, name, formats)
+            try:
+                files += save(braking_distance(page), folder, name, formats)
+            except FileError as error:
+                refusal = refusal or error
             if len(pages) > 1:
                 gc.collect()  # a drawn figure is ten megabytes of objects that refer to each other
+    if refusal is not None:
+        raise refusal
     for file in folder.iterdir():
         if file not in files and _OURS.fullmatch(file.name):
             file.unlink(missing_ok=True)

@@ -1,13 +1,20 @@
 """Files that appear whole or not at all."""
 
 import os
+import re
 import secrets
 import shutil
+import time
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 from slosh_cli.errors import SloshError
+
+_PART: Final = re.compile(r"\..*[0-9a-f]{8}\.part")
+_ABANDONED: Final = 86400.0
+"""Seconds after which an unfinished part belongs to a process that was killed."""
 
 
 class FileError(SloshError):
@@ -40,8 +47,8 @@ def replacing(path: Path) -> Iterator[Path]:
 def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
     """Yield an empty folder inside `folder`; when the block ends well its files move up together.
 
-    Files named in `owned` that the block did not write are removed then, so that `folder` never holds
-    a mixture of two runs. When the block fails, `folder` keeps what it had.
+    Files named in `owned` are removed first, so that `folder` never holds a mixture of two runs, whenever the
+    process ends. When the block fails, `folder` keeps what it had.
     Raises FileError when the operating system refuses.
     """
     with _refusals(folder):
@@ -53,13 +60,59 @@ def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
             written = sorted(stage.iterdir())
             for file in written:
                 _to_disk(file)
+            _check_no_folders(folder, [file.name for file in written])
+            for name in owned:
+                (folder / name).unlink(missing_ok=True)
             for file in written:
                 file.replace(folder / file.name)
-            for name in set(owned) - {file.name for file in written}:
-                (folder / name).unlink(missing_ok=True)
         finally:
             shutil.rmtree(stage, ignore_errors=True)
         _to_disk(folder)
+
+
+def write_text(text: str, path: Path) -> None:
+    """Write a text (UTF-8) to `path`, which is replaced only when it is whole. Raises FileError."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def try_targets(folder: Path, names: Collection[str]) -> None:
+    """Refuse what cannot be written before the work that it is for: `names` in `folder`.
+
+    A file is made there and taken away again, with the folders that had to be made for it. Parts of files that
+    processes left which were killed are removed. Raises FileError.
+    """
+    with _refusals(folder):
+        missing = [place for place in (folder, *folder.absolute().parents) if not place.exists()]
+        for place in (folder, *folder.absolute().parents):
+            if place.is_symlink() and not place.exists():
+                raise FileError(f"cannot write into {folder}: {place} is a link that leads nowhere", str(folder))
+            if place.exists() and not place.is_dir():
+                raise FileError(f"cannot write into {folder}: {place} is not a folder", str(folder))
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            probe = folder / f".{max(names, key=len)}.{secrets.token_hex(4)}.part"
+            probe.touch(exist_ok=False)
+            probe.unlink()
+            _check_no_folders(folder, names)
+            _remove_abandoned(folder)
+        finally:
+            for place in missing:
+                with suppress(OSError):
+                    place.rmdir()
+
+
+def _check_no_folders(folder: Path, names: Collection[str]) -> None:
+    for target in (folder / name for name in names):
+        if target.is_dir() and not target.is_symlink():
+            raise FileError(f"cannot write {target}: there is a folder of that name", str(target))
+
+
+def _remove_abandoned(folder: Path) -> None:
+    for part in folder.iterdir():
+        with suppress(OSError):
+            if _PART.fullmatch(part.name) and time.time() - part.lstat().st_mtime > _ABANDONED:
+                shutil.rmtree(part) if part.is_dir() and not part.is_symlink() else part.unlink()
 
 
 @contextmanager

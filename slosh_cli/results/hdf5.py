@@ -1,15 +1,18 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
+import io
 import json
+import os
 import platform
+import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import h5py
 import numpy as np
@@ -112,7 +115,7 @@ def write_history(result: Result, path: Path) -> None:
     """
     from slosh_cli.scenario import scenario_to_yaml
 
-    with replacing(path) as temporary, h5py.File(temporary, "x") as file:
+    with _writing(path) as file:
         time = _write_channel(file, TIME, result.time)
         time.make_scale(TIME.name)
         for name, values in result.channels.items():
@@ -135,7 +138,7 @@ def write_excitation(
     """
     from slosh_cli.scenario import scenario_to_yaml
 
-    with replacing(path) as temporary, h5py.File(temporary, "x") as file:
+    with _writing(path) as file:
         axis = _write_channel(file, TIME, time)
         axis.make_scale(TIME.name)
         for info, values in channels.items():
@@ -183,6 +186,95 @@ def _refuse(path: Path, faults: Iterable[str]) -> None:
     if found:
         listed = "; ".join(found[:MOST_SHOWN]) + (f"; and {len(found) - MOST_SHOWN} more" * (len(found) > MOST_SHOWN))
         raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[h5py.File]:
+    """An empty HDF5 file that replaces `path` when the block ends well and all of it is on the disk.
+
+    HDF5 does not survive a disk that is full, or ends the process with it; so it never gets to know.
+    """
+    with replacing(path) as temporary, temporary.open("xb+") as target:
+        steady = _SteadyFile(target)
+        with h5py.File(steady, "w") as file:
+            yield file
+        if steady.trouble is not None:
+            raise steady.trouble
+
+
+class _SteadyFile(io.RawIOBase):
+    """A binary file that takes everything it is given; `trouble` is why the disk did not, None where it did."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._place = self._end = 0
+        self.trouble: OSError | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    def writable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        self._place = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._end}[whence]
+        return self._place
+
+    def tell(self) -> int:
+        return self._place
+
+    def write(self, data: Any) -> int:
+        count = memoryview(data).nbytes
+        self._try(lambda: self._file.write(data))
+        self._place += count
+        self._end = max(self._end, self._place)
+        return count
+
+    def readinto(self, buffer: Any) -> int:
+        view = memoryview(buffer).cast("B")
+        view[:] = bytes(len(view))
+        self._try(lambda: self._file.readinto(view))  # type: ignore[attr-defined]
+        self._place += len(view)
+        return len(view)
+
+    def truncate(self, size: int | None = None) -> int:
+        self._end = self._place if size is None else size
+        self._try(lambda: self._file.truncate(self._end))
+        return self._end
+
+    def flush(self) -> None:
+        if not self.closed:
+            self._try(self._file.flush)
+
+    def _try(self, action: Callable[[], object]) -> None:
+        """Carry `action` out at the present place, unless the disk has refused before."""
+        if self.trouble is not None:
+            return
+        try:
+            self._file.seek(self._place)
+            action()
+        except OSError as error:
+            self.trouble = error
+
+
+def is_of(path: Path, scenario: "Scenario | TankScenario", settings: str = "") -> bool:
+    """Whether the file at `path` is the history of this scenario under these settings; descriptions do not count."""
+    from slosh_cli.scenario import scenario_to_yaml
+
+    try:
+        with h5py.File(path, "r") as file:
+            text = file[SCENARIO][()].decode("utf-8")
+            found = str(file.attrs.get("settings", ""))
+    except Exception:  # whatever it is, it is no history of ours
+        return False
+    return found == settings and _without_words(text) == _without_words(scenario_to_yaml(scenario))
+
+
+def _without_words(text: str) -> str:
+    return re.sub(r"^(name|description):.*\n(?:[ \t].*\n|\n)*", "", text, flags=re.MULTILINE)
 
 
 def _write_channel(file: h5py.File, info: Channel, values: Vector) -> h5py.Dataset:

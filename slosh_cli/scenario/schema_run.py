@@ -138,7 +138,7 @@ class Contact(Part):
     )
     adhesion: Annotated[Adhesion, BeforeValidator(named_adhesion)] = Field(
         description="`dry`, `wet`, a coefficient of plain Coulomb friction, or Polach's parameters in a mapping.",
-        examples=["dry", "wet", "0.15"],
+        examples=["dry", "wet", 0.15],
     )
     stiffness: Annotated[float | None, Quantity("contact_stiffness", Range(1e7, 1e15), "9.4e10 N/m^1.5")] = Field(
         default=None,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import platform
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -91,6 +91,20 @@ class Journal:
                 "INSERT INTO session (started, program, sources, circumstances) VALUES (?, ?, ?, ?)", row
             )
         self._session = done.lastrowid or 0
+
+    def note_study(self, study: Mapping[str, Any]) -> None:
+        """Note what study the folder holds from now on."""
+        with self._commit():
+            self._file.execute("CREATE TABLE IF NOT EXISTS study (id INTEGER PRIMARY KEY, axes TEXT NOT NULL)")
+            self._file.execute("INSERT OR REPLACE INTO study (id, axes) VALUES (1, ?)", (json.dumps(study),))
+
+    def study(self) -> dict[str, Any] | None:
+        """The study that was noted last; None where none was."""
+        with self._trouble("read"):
+            if not self._file.execute("SELECT 1 FROM sqlite_master WHERE name = 'study'").fetchone():
+                return None
+            found = self._file.execute("SELECT axes FROM study").fetchone()
+            return dict(json.loads(found[0])) if found else None
 
     def add(self, outcomes: Sequence[Outcome]) -> None:
         """Commit finished stops; on return they are on the disk."""

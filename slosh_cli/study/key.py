@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from functools import lru_cache
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.plain_data import plain_data
+
+if TYPE_CHECKING:
+    from slosh_cli.study.plan import Study
 
 RESULT_VERSION: Final = 2
 """Raise it whenever the same scenario would give another answer: journals then compute every stop anew."""
@@ -19,14 +23,39 @@ _SAYS_NOTHING: Final = ("name", "description", "output")
 
 
 def stop_key(scenario: Scenario) -> str:
-    """sha256 (hexadecimal) of the resolved scenario, every default written out, and of RESULT_VERSION."""
-    parts = vars(scenario).items()
-    telling = [f'"{name}":{_text(part)}' for name, part in sorted(parts) if name not in _SAYS_NOTHING]
-    return hashlib.sha256(f"[{RESULT_VERSION},{{{','.join(telling)}}}]".encode()).hexdigest()
+    """sha256 (hexadecimal) of all that the answer of a stop depends on: the scenario and RESULT_VERSION.
+
+    The scenario is the resolved one, every default written out, without its words and what it is to put out.
+    """
+    return _key(scenario, _SAYS_NOTHING)
+
+
+def history_key(scenario: Scenario) -> str:
+    """sha256 (hexadecimal) of all that the history of a stop depends on: the whole scenario and RESULT_VERSION."""
+    return _key(scenario, ())
+
+
+def study_key(study: Study) -> dict[str, Any]:
+    """What tells studies apart: a hash of the base scenario and the values of every axis."""
+    axes = {axis.key: list(axis.values) for axis in study.axes}
+    return {"base": _key(study.base, _SAYS_NOTHING, version=0), "axes": axes}
+
+
+def extends(study: Mapping[str, Any], earlier: Mapping[str, Any]) -> bool:
+    """Whether a study holds every stop of an earlier one; both as `study_key` has them."""
+    axes, others = study["axes"], earlier["axes"]
+    same = study["base"] == earlier["base"] and set(axes) == set(others)
+    return same and all(set(values) <= set(axes[key]) for key, values in others.items())
+
+
+def _key(scenario: Scenario, without: tuple[str, ...], version: int | None = None) -> str:
+    telling = [f'"{name}":{_text(part)}' for name, part in sorted(vars(scenario).items()) if name not in without]
+    number = RESULT_VERSION if version is None else version
+    return hashlib.sha256(f"[{number},{{{','.join(telling)}}}]".encode()).hexdigest()
 
 
 @lru_cache(maxsize=256)
-def _text(part: Part | int) -> str:
+def _text(part: Part | int | str) -> str:
     """JSON of a part, the same for the same values; the stops of a study share most parts."""
     data = plain_data(part, as_text=True) if isinstance(part, Part) else part
     return json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)

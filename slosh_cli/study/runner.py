@@ -7,12 +7,17 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from slosh_cli.errors import ScenarioError
+from slosh_cli.results.files import FileError
 from slosh_cli.study.journal import Journal
+from slosh_cli.study.key import history_key
 from slosh_cli.study.outcome import Outcome, without_result
 from slosh_cli.study.plan import Stop, Study
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario
 
 HISTORIES: Final = "histories"
 """Folder of the history files inside the study's."""
@@ -43,18 +48,22 @@ class Workers(Protocol):
 class Plan:
     """Every stop of a study by its index: its key, or why its combination of values is no sound scenario.
 
-    `open` are the indices that have to be computed, `reused` counts those the journal holds already.
+    `histories` are the files of their histories within `folder`, where they are kept; `unwritten` says why some could
+    not be. `open` are the indices that have to be computed, `reused` counts those that are there already.
     """
 
+    folder: Path
     keys: list[str | None] = field(default_factory=list)
+    histories: dict[int, str] = field(default_factory=dict)
     unsound: dict[int, str] = field(default_factory=dict)
     open: list[int] = field(default_factory=list)
     reused: int = 0
+    unwritten: list[str] = field(default_factory=list)
 
 
-def history_file(key: str) -> str:
-    """Path of a stop's history file within the study's folder."""
-    return f"{HISTORIES}/{key[:20]}.h5"
+def history_file(scenario: Scenario) -> str:
+    """Path of a stop's history file within the study's folder: another for every change that the history shows."""
+    return f"{HISTORIES}/{history_key(scenario)[:20]}.h5"
 
 
 def plan(study: Study, journal: Journal | None, folder: Path) -> Plan:
@@ -63,47 +72,48 @@ def plan(study: Study, journal: Journal | None, folder: Path) -> Plan:
     A stop whose history is asked for counts as done when its file lies in `folder`, too.
     """
     study.check()
-    found, seen = Plan(), set()
+    found, seen = Plan(folder), set()
     for index in range(study.size):
         try:
-            key = study.stop(index).key
+            stop = study.stop(index)
         except ScenarioError as error:
             found.keys.append(None)
             found.unsound[index] = error.problems[0].text(study.file)
             continue
-        found.keys.append(key)
-        if journal is not None and _is_done(study, journal, folder, key):
+        found.keys.append(stop.key)
+        history = history_file(stop.scenario) if study.histories else ""
+        if history:
+            found.histories[index] = history
+        if journal is not None and _is_done(journal, stop.key, folder / history if history else None):
             found.reused += 1
-        elif key not in seen:
+        elif (stop.key, history) not in seen:
             found.open.append(index)
-            seen.add(key)
+            seen.add((stop.key, history))
     return found
 
 
-def _is_done(study: Study, journal: Journal, folder: Path, key: str) -> bool:
-    if key not in journal or not study.histories or (folder / history_file(key)).exists():
+def _is_done(journal: Journal, key: str, history: Path | None) -> bool:
+    if key not in journal or history is None or history.exists():
         return key in journal
     return "steps" not in (journal.answer(key) or {})  # it ended without a result: there is no history to write
 
 
 def answer(study: Study, plan: Plan, journal: Journal, index: int) -> dict[str, Any] | None:
-    """The row of a stop, None while it has not been computed."""
+    """The row of a stop, None while it has not been computed; it names the stop's history where there is one."""
     key = plan.keys[index]
     if key is None:
         return without_result(study.conditions(index), plan.unsound[index])
     row = journal.answer(key)
-    if row is not None and study.histories and "steps" in row:
-        row["history"] = history_file(key)
+    if row is not None and index in plan.histories and (plan.folder / plan.histories[index]).exists():
+        row["history"] = plan.histories[index]
     return row
 
 
-def run_study(
-    study: Study, plan: Plan, journal: Journal, workers: Workers, folder: Path, *, cancel: Event, report: Report
-) -> int:
+def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, cancel: Event, report: Report) -> int:
     """Compute the open stops of a study, committed to the journal as they come; returns how many came.
 
-    Ends early, without losing what has come, when `cancel` is set. Raises FileError when journal or histories
-    cannot be written.
+    Ends early, without losing what has come, when `cancel` is set. A history that cannot be written costs nothing but
+    itself; the plan says so. Raises FileError when the journal cannot be written.
     """
     done, total = 0, len(plan.open)
     if not total:
@@ -112,17 +122,20 @@ def run_study(
     stops = (study.stop(index, plan.keys[index]) for index in plan.open)
     with closing(workers.outcomes(stops, total, cancel)) as outcomes:
         for batch in outcomes:
-            for outcome in batch:
-                _write_history(outcome, folder)
             if batch:
                 journal.add(batch)
                 done += len(batch)
                 report(done, total)
+            for outcome in batch:
+                _write_history(outcome, plan)
     return done
 
 
-def _write_history(outcome: Outcome, folder: Path) -> None:
+def _write_history(outcome: Outcome, plan: Plan) -> None:
     if outcome.result is not None:
         from slosh_cli.results.hdf5 import write_history
 
-        write_history(outcome.result, folder / history_file(outcome.key))
+        try:
+            write_history(outcome.result, plan.folder / history_file(outcome.result.scenario))
+        except FileError as error:
+            plan.unwritten.append(str(error))

@@ -75,7 +75,7 @@ def compute(study: Study, workers: Workers, folder: Path) -> None:
     with Journal(path) as journal:
         journal.begin_session("bench")
         planned = plan(study, journal, folder)
-        done = run_study(study, planned, journal, workers, folder, cancel=Event(), report=lambda *_: None)
+        done = run_study(study, planned, journal, workers, cancel=Event(), report=lambda *_: None)
     assert done == study.size
 
 

@@ -35,7 +35,8 @@ def solver(monkeypatch: pytest.MonkeyPatch) -> Solver:
     stand_in = Solver()
     simulate, compiled = ModuleType("slosh_cli.results.simulate"), ModuleType("slosh_cli.compiled")
     simulate.simulate = stand_in.simulate  # type: ignore[attr-defined]
-    compiled.is_cached = lambda: True  # type: ignore[attr-defined]
+    compiled.is_cached = lambda *_: True  # type: ignore[attr-defined]
+    compiled.not_kept = lambda: ""  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, simulate.__name__, simulate)
     monkeypatch.setitem(sys.modules, compiled.__name__, compiled)
     return stand_in

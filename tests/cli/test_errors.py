@@ -174,3 +174,38 @@ def test_a_poor_terminal_is_no_error() -> None:
     run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=False)
     assert run.returncode == 0
     assert run.stdout.endswith(b"?\n")
+
+
+STREAMS = {"out closed": (">&-", 0), "err closed": ("2>&-", 0), "all closed": ("<&- >&- 2>&-", 0),
+           "out full": (">/dev/full", 2), "both full": (">/dev/full 2>/dev/full", 2)}  # fmt: skip
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="streams of Linux")
+@pytest.mark.parametrize(("streams", "code"), STREAMS.values(), ids=STREAMS)
+@pytest.mark.parametrize("arguments", ["check scenarios/paper_80.yaml --json", "run --help"])
+def test_streams_that_take_nothing_are_no_crash(arguments: str, streams: str, code: int) -> None:
+    """Closed streams are silence; an answer that could not be told is no success, and no crash either."""
+    start = f"'{sys.executable}' -c 'import sys; from slosh_cli.cli import main; sys.exit(main())' {arguments}"
+    root = Path(__file__).parents[2]
+    run = subprocess.run(["bash", "-c", f"{start} {streams}"], cwd=root, capture_output=True, text=True, check=False)
+    assert run.returncode == code, run.stderr
+    told = "error: cannot write to standard output: No space left on device\n" if streams == ">/dev/full" else ""
+    assert run.stderr == told
+
+
+@pytest.mark.parametrize("backend", ["nonsense", "TkAgg"])
+def test_the_users_matplotlib_backend_is_no_matter(backend: str, tmp_path: Path) -> None:
+    """An unknown one keeps matplotlib from being imported at all."""
+    code = (
+        "import sys; sys.path[:0] = sys.argv[1:3]; from slosh_cli.cli import main; from plausible import plausible_run;"
+        "import slosh_cli.results.simulate as s; s.simulate = lambda scenario, **_: plausible_run(scenario);"
+        "import slosh_cli.report.record; sys.exit(main(sys.argv[3:]))"
+    )
+    root = Path(__file__).parents[1]
+    words = [str(root / "results"), str(root / "cli"), "run", str(PAPER), "-o", str(tmp_path / "here")]
+    run = subprocess.run(
+        [sys.executable, "-c", code, *words], env=os.environ | {"MPLBACKEND": backend}, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert len(list((tmp_path / "here").iterdir())) == 10

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -161,32 +162,167 @@ def test_a_second_run_replaces_the_first_whole(slosh: Slosh, solver: Solver, tmp
     }
 
 
-@pytest.mark.parametrize("writer", ["write_history", "write_summary", "draw_run"])
-def test_a_run_that_cannot_be_written_leaves_the_earlier_one(
-    slosh: Slosh, solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str
+def full_disk(*_: object, **__: object) -> None:
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize(
+    ("writer", "lost"),
+    [
+        ("results.hdf5.write_history", {"run.h5"}),
+        ("results.tables.write_summary", {"summary.csv"}),
+        ("report.figures.wheel_speed", {"wheel_speed.png", "wheel_speed.svg"}),
+        ("report.figures.draw_run", DRAWN),
+    ],
+)
+@pytest.mark.parametrize("as_json", [False, True], ids=["people", "json"])
+def test_what_cannot_be_written_costs_itself_alone(
+    slosh: Slosh, solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, lost: set[str],
+    as_json: bool,
+) -> None:  # fmt: skip
+    """The answer is told, every other file is there and of this run, what was there before is gone, exit code 2."""
+    here = tmp_path / "here"
+    here.mkdir()
+    for file in ("run.h5", "summary.csv", *DRAWN):
+        (here / file).write_text("of an earlier run")
+    solver.answer = lambda scenario: replace(plausible_run(scenario), braking_distance_m=123.25)
+    home, name = f"slosh_cli.{writer}".rsplit(".", 1)
+    if name == "wheel_speed":
+        monkeypatch.setitem(figures.FIGURES, name, full_disk)  # type: ignore[arg-type]
+    else:
+        monkeypatch.setattr(f"{home}.{name}", full_disk)
+    outcome = slosh("run", PAPER, "-o", "here", *(["--json"] if as_json else []))
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "123.25" in outcome.out
+    assert "No space left on device" in outcome.err
+    assert all(file.split(".")[0] in outcome.err for file in lost)
+    assert names(here) == {"run.h5", "summary.csv", *DRAWN} - lost
+    assert all(file.read_bytes() != b"of an earlier run" for file in here.iterdir())
+    if "run.h5" not in lost:
+        with h5py.File(here / "run.h5") as file:
+            assert file.attrs["braking_distance_m"] == 123.25
+    if "summary.csv" not in lost:
+        assert pd.read_csv(here / "summary.csv")["braking_distance_m"][0] == 123.25
+    if as_json:
+        answer = strict_json(outcome.out)
+        assert {Path(file).name for file in told(answer["files"])} == names(here)
+        assert any("No space left on device" in warning for warning in answer["warnings"])
+
+
+def told(files: dict[str, Any]) -> list[str]:
+    """Every file that the JSON object names."""
+    return [*files["figures"], *(files[kind] for kind in ("history", "summary") if kind in files)]
+
+
+def test_a_figure_that_fails_in_any_way_costs_itself_alone(
+    slosh: Slosh, solver: Solver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    slosh("run", PAPER, "-o", "here")
-    before = {file.name: file.read_bytes() for file in (tmp_path / "here").iterdir()}
+    def fails(_: object) -> None:
+        raise ValueError("no such font")
 
-    def fail(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    home = {"write_history": "results.hdf5", "write_summary": "results.tables", "draw_run": "report.figures"}
-    monkeypatch.setattr(f"slosh_cli.{home[writer]}.{writer}", fail)
+    monkeypatch.setitem(figures.FIGURES, "slosh", fails)  # type: ignore[arg-type]
     outcome = slosh("run", PAPER, "-o", "here")
     assert outcome.code == ExitCode.BAD_INPUT
-    assert "No space left on device" in outcome.err
-    assert {file.name: file.read_bytes() for file in (tmp_path / "here").iterdir()} == before
+    assert "the figure here/slosh could not be written: ValueError: no such font" in outcome.err
+    assert names(tmp_path / "here") == {"run.h5", "summary.csv", *DRAWN} - {"slosh.png", "slosh.svg"}
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_the_run(
-    slosh: Slosh, solver: Solver, tmp_path: Path
+def test_a_run_without_an_answer_says_so_even_if_a_file_fails(
+    slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "file").write_text("")
-    outcome = slosh("run", PAPER, "-o", "file/here")
+    solver.answer = unfinished_run
+    monkeypatch.setattr("slosh_cli.results.hdf5.write_history", full_disk)
+    assert slosh("run", PAPER, "-o", "here", "--no-figures").code == ExitCode.NO_ANSWER
+
+
+def _a_folder(here: Path) -> None:
+    (here / "run.h5").mkdir(parents=True)
+
+
+def _a_figures_folder(here: Path) -> None:
+    (here / "slosh.png").mkdir(parents=True)
+
+
+def _a_file(here: Path) -> None:
+    here.write_text("")
+
+
+def _a_dangling_link(here: Path) -> None:
+    here.symlink_to(here.with_name("nowhere"))
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "words"),
+    [
+        (_a_folder, "there is a folder of that name"),
+        (_a_figures_folder, "there is a folder of that name"),
+        (_a_file, "is not a folder"),
+        (_a_dangling_link, "is a link that leads nowhere"),
+    ],
+)
+def test_targets_are_tried_before_the_run(
+    slosh: Slosh, solver: Solver, tmp_path: Path, obstacle: Callable[[Path], None], words: str
+) -> None:
+    obstacle(tmp_path / "here")
+    before = sorted(tmp_path.rglob("*"))
+    outcome = slosh("run", PAPER, "-o", "here")
     assert outcome.code == ExitCode.BAD_INPUT
-    assert "is not a folder" in outcome.err
+    assert words in outcome.err
     assert solver.scenarios == []
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_name_that_is_too_long_is_refused_before_the_run(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    outcome = slosh("run", PAPER, "-o", f"new/{'x' * 300}")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "File name too long" in outcome.err
+    assert solver.scenarios == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_in_place_of_a_file_gives_way(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "run.h5").symlink_to(tmp_path / "nowhere")
+    assert slosh("run", PAPER, "-o", "here", "--no-figures").code == ExitCode.DONE
+    assert not (tmp_path / "here" / "run.h5").is_symlink()
+
+
+# --- folders nobody chose
+
+
+def test_what_was_set_is_in_the_folders_name(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    slosh("run", PAPER, "--no-figures")
+    slosh("run", PAPER, "--no-figures", "--set", "tank.liquid.model=rigid", "--set", "braking.torque=12 kN m")
+    slosh("run", PAPER, "--no-figures", "--set", "braking.torque=12 kN m", "--set", "tank.liquid.model=rigid")
+    slosh("run", PAPER, "--no-figures", "--set", "name=mine", "--set", "tank.fill=0.4")
+    assert names(tmp_path / "outputs") == {
+        "paper-80-liquid", "paper-80-liquid-braking.torque=12-kN-m-tank.liquid.model=rigid", "mine",
+    }  # fmt: skip
+
+
+def test_many_settings_make_no_endless_name(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    many = [f"solver.{key}" for key in ("tolerance=1e-3", "time_limit=500 s")] + [f"description={'x' * 300}"]
+    many += ["wagon.pivot_spacing=10.5 m", "track.domain.length=40 m", "contact.adhesion=wet", "braking.onset=0.75 s"]
+    for fill in (0.4, 0.5):
+        settings = [word for text in [*many, f"tank.fill={fill}"] for word in ("--set", text)]
+        assert slosh("run", PAPER, "--no-figures", *settings).code == ExitCode.DONE
+    one, two = names(tmp_path / "outputs")
+    assert max(len(one), len(two)) <= 100
+
+
+def test_a_changed_scenario_never_replaces_an_earlier_run(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
+    text = PAPER.read_text()
+    file = tmp_path / "wagon.yaml"
+    changed = text.replace("initial_speed: 80 km/h", "initial_speed: 70 km/h")
+    assert changed != text
+    for content in (text, changed, text.replace("description:", "description: edited"), changed):
+        file.write_text(content)
+        outcome = slosh("run", file, "--no-figures")
+        assert outcome.code == ExitCode.DONE
+        assert ("these go to outputs/paper-80-liquid-2" in outcome.err) == (content == changed)
+    assert names(tmp_path / "outputs") == {"paper-80-liquid", "paper-80-liquid-2"}
+    for folder, speed in (("paper-80-liquid", 80.0), ("paper-80-liquid-2", 70.0)):
+        assert pd.read_csv(tmp_path / "outputs" / folder / "summary.csv")["v0_km_h"][0] == speed
 
 
 def test_the_history_holds_the_scenario_as_it_was_run(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:
@@ -199,7 +335,19 @@ def test_the_history_holds_the_scenario_as_it_was_run(slosh: Slosh, solver: Solv
 
 
 def test_the_first_run_announces_the_compilation(slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
     outcome = slosh("run", PAPER, "--no-figures", "--json")
     assert outcome.err.startswith("Compiling the solver, once")
     strict_json(outcome.out)
+
+
+def test_where_nothing_can_be_kept_it_says_so_and_how_to_mend_it(
+    slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "not_kept", lambda: "cannot write into /nowhere")
+    err = slosh("run", PAPER, "--no-figures", "--json").err
+    assert "in memory, for this run only" in err
+    assert "cannot write into /nowhere" in err
+    assert "NUMBA_CACHE_DIR" in err
+    assert "Later runs start at once" not in err

@@ -26,7 +26,7 @@ from slosh_cli.scenario import Scenario, load_scenario
 from slosh_cli.scenario import replace as with_values
 
 KEYS = ["name", "runs", "done", "failed", "reused", "table", "figures", "wall_seconds"]
-FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite", "journal.lock"}
+FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite"}
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def template() -> Result:
 def quick(monkeypatch: pytest.MonkeyPatch, template: Result) -> QuickSolver:
     solver = QuickSolver(template)
     monkeypatch.setattr(slosh_cli.results.simulate, "simulate", solver.simulate)
-    monkeypatch.setattr("slosh_cli.compiled.is_cached", lambda: True)
+    monkeypatch.setattr("slosh_cli.compiled.is_cached", lambda *_: True)
     monkeypatch.setattr("slosh_cli.report.study_figures.draw_study", _touch)
     return solver
 
@@ -283,7 +283,7 @@ def test_stops_of_another_build_of_the_solver_are_told(
     slosh: Slosh, quick: QuickSolver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     slosh("sweep", "--torque", "5")
-    monkeypatch.setattr("slosh_cli.compiled.CACHE_FOLDER", Path("another"))
+    monkeypatch.setattr("slosh_cli.compiled.SOURCES", "another")
     outcome = slosh("sweep", "--torque", "5,10")
     assert "4 stops in the journal are by another build of the solver; --fresh computes them anew" in outcome.err
 
@@ -337,3 +337,86 @@ def test_on_a_terminal_progress_is_a_bar_with_rate_and_time_left(
 )
 def test_durations_read_like_speech(seconds: float | None, words: str) -> None:
     assert duration(seconds) == words
+
+
+# --- what cannot be written, and folders nobody chose
+
+
+def _fails(*_: Any, **__: Any) -> None:
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize(
+    ("writer", "lost"),
+    [
+        ("study.table.write_study_table", {"braking_distance.csv"}),
+        ("report.study_figures.draw_study", {"braking_distance.png", "braking_distance.svg"}),
+    ],
+)
+def test_what_cannot_be_written_costs_itself_alone(
+    slosh: Slosh, quick: QuickSolver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, lost: set[str]
+) -> None:
+    slosh("sweep", "--torque", "5,10", "-o", "here")
+    monkeypatch.setattr(f"slosh_cli.{writer}", _fails)
+    for as_json in (True, False):
+        outcome = slosh("sweep", "--torque", "5,10,15", "-o", "here", *(["--json"] if as_json else []))
+        assert outcome.code == ExitCode.BAD_INPUT
+        assert "No space left on device" in outcome.err
+        assert names(tmp_path / "here") == FILES - lost
+        if as_json:
+            answer = answer_of(outcome)
+            assert list(answer) == [*KEYS, "warnings"]
+            assert answer["done"] == 12
+            assert {Path(file).name for file in [*answer["figures"], answer["table"]] if file} == FILES - lost - {
+                "journal.sqlite"
+            }
+        else:
+            assert "most effective" in outcome.out
+            assert not any(str(Path("here") / file) in outcome.out for file in lost)
+
+
+@pytest.mark.parametrize("name", ["braking_distance.csv", "journal.sqlite", "braking_distance.svg", "histories/x"])
+def test_targets_are_tried_before_the_first_stop(slosh: Slosh, quick: QuickSolver, tmp_path: Path, name: str) -> None:
+    if name == "histories/x":
+        (tmp_path / "here").mkdir()
+        (tmp_path / "here" / "histories").write_text("")
+    else:
+        (tmp_path / "here" / name).mkdir(parents=True)
+    outcome = slosh("sweep", "--torque", "5", "--histories", "-o", "here", "--json")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert answer_of(outcome)["error"]["code"] == "file"
+    assert quick.scenarios == []
+
+
+def test_another_study_of_the_same_name_gets_a_folder_of_its_own(
+    slosh: Slosh, quick: QuickSolver, tmp_path: Path
+) -> None:
+    outputs = tmp_path / "outputs"
+    slosh("sweep", "--torque", "5,10")
+    first = (outputs / "paper-wagon" / "braking_distance.csv").read_bytes()
+    outcome = slosh("sweep", "--torque", "15,20")
+    assert outcome.code == ExitCode.DONE
+    assert "outputs/paper-wagon holds the results of other settings; these go to outputs/paper-wagon-2" in outcome.err
+    slosh("sweep", "--torque", "5")  # a part of it would take rows away from the first table
+    slosh("sweep", "--torque", "5,10", "--vary", "tank.fill=0.4,0.5")
+    slosh("sweep", "--torque", "5,10", "--set", "contact.adhesion=wet")
+    assert (outputs / "paper-wagon" / "braking_distance.csv").read_bytes() == first
+    assert names(outputs) == {
+        "paper-wagon", "paper-wagon-2", "paper-wagon-3", "paper-wagon-4", "paper-wagon-contact.adhesion=wet",
+    }  # fmt: skip
+    assert answer_of(slosh("sweep", "--torque", "5,10", "--json"))["reused"] == 8
+    assert answer_of(slosh("sweep", "--torque", "15,20,25", "--json"))["reused"] == 8
+    assert len(pd.read_csv(outputs / "paper-wagon-2" / "braking_distance.csv")) == 12
+    assert len(names(outputs)) == 5
+
+
+def test_a_chosen_folder_takes_every_study(slosh: Slosh, quick: QuickSolver, tmp_path: Path) -> None:
+    slosh("sweep", "--torque", "5,10", "-o", "here")
+    assert answer_of(slosh("sweep", "--torque", "10,20", "-o", "here", "--json"))["reused"] == 4
+    assert names(tmp_path) == {"here"}
+
+
+def test_a_fresh_start_does_not_take_another_studys_journal(slosh: Slosh, quick: QuickSolver, tmp_path: Path) -> None:
+    slosh("sweep", "--torque", "5,10")
+    slosh("sweep", "--torque", "20", "--fresh")
+    assert answer_of(slosh("sweep", "--torque", "5,10", "--json"))["reused"] == 8

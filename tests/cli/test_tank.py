@@ -251,3 +251,43 @@ def test_every_axis_of_the_figures_has_a_unit(slosh: Slosh, monkeypatch: pytest.
         for axes in figure.axes:
             assert axes.get_ylabel(), axes.get_title()
         assert figure.axes[-1].get_xlabel() or figure.axes[-1].get_ylabel().startswith("potential")
+
+
+def test_an_excitation_never_replaces_another_one(slosh: Slosh, tmp_path: Path) -> None:
+    outputs = tmp_path / "outputs"
+    short = ["tank", "excite", PAPER, "--duration", "0.1 s"]
+    for level in ("1 m/s^2", "2 m/s^2", "1 m/s^2"):
+        assert slosh(*short, "--deceleration", level).code == 0
+    slosh(*short, "--deceleration", "1 m/s^2", "--set", "tank.liquid.model=rigid")
+    assert {folder.name for folder in outputs.iterdir()} == {
+        "paper-80-liquid", "paper-80-liquid-2", "paper-80-liquid-tank.liquid.model=rigid",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("writer", "lost"),
+    [
+        ("results.hdf5.write_excitation", {"excite.h5"}),
+        ("results.tables.write_table", {"excite.csv"}),
+        ("report.tank_figures.draw_excitation", {"excite.png", "excite.svg"}),
+    ],
+)
+def test_a_file_of_an_excitation_that_fails_costs_itself_alone(
+    slosh: Slosh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str, lost: set[str]
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(f"slosh_cli.{writer}", full)
+    outcome = slosh("tank", "excite", PAPER, "--deceleration", "1 m/s^2", "--duration", "0.1 s", "-o", "here", "--json")
+    assert outcome.code == 2
+    found = json.loads(outcome.out)
+    assert found["max_normalised_force"] > 0.0
+    assert "No space left on device" in found["warnings"][-1]
+    files = {file.name for file in (tmp_path / "here").iterdir()}
+    assert files == {"excite.csv", "excite.h5", "excite.png", "excite.svg"} - lost
+    told = [
+        *found["files"]["figures"],
+        *(found["files"][kind] for kind in ("table", "history") if kind in found["files"]),
+    ]
+    assert {file.rsplit("/")[-1] for file in told} == files

@@ -72,3 +72,39 @@ def test_list(capsys):
     )
     assert main(["validate", "--list"]) == 0
     assert "kolaei" in capsys.readouterr().out
+
+
+def test_a_part_of_the_cases_does_not_replace_the_report_of_all(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "run", fell_short)
+    folder = tmp_path / "outputs" / "validation"
+    assert main(["validate"]) == 1
+    report = (folder / "report.md").read_bytes()
+    assert main(["validate", "kolaei"]) == 1
+    assert main(["validate", "polach", "kolaei"]) == 1
+    assert (folder / "report.md").read_bytes() == report
+    assert "## kolaei" in (folder / "kolaei" / "report.md").read_text(encoding="utf-8")
+    assert (folder / "kolaei+polach" / "report.md").is_file()
+
+
+def test_the_verdict_is_told_when_the_report_cannot_be_written(tmp_path, capsys, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("slosh_cli.results.files.write_text", full)
+    assert main(["validate", "polach", "--json", "-o", str(tmp_path)]) == 2
+    out, err = capsys.readouterr()
+    answer = json.loads(out)
+    assert answer["cases"][0]["passed"] is True
+    assert "report" not in answer["files"]
+    assert "No space left on device" in answer["warnings"][0]
+    assert "report.md could not be written: No space left on device" in err
+    assert main(["validate", "polach", "-o", str(tmp_path)]) == 2
+    assert "1 of 1 cases passed" in capsys.readouterr().out
+
+
+def test_a_report_that_cannot_be_written_is_refused_before_the_cases_run(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(registry, "run", lambda data: pytest.fail("ran"))
+    (tmp_path / "report.md").mkdir()
+    assert main(["validate", "polach", "-o", str(tmp_path)]) == 2
+    assert "there is a folder of that name" in capsys.readouterr().err

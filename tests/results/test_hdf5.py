@@ -2,6 +2,8 @@
 
 import pickle
 import random
+import subprocess
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -268,3 +270,45 @@ def test_a_path_that_cannot_be_written_is_the_users_matter(result: Result, tmp_p
     (tmp_path / "run.h5").mkdir()
     with pytest.raises(FileError, match="cannot write"):
         write_history(result, tmp_path / "run.h5")
+
+
+LIMITS = """
+import resource, sys
+sys.path.insert(0, sys.argv[1])
+from pathlib import Path
+from plausible import plausible_run
+from slosh_cli.results.files import FileError
+from slosh_cli.results.hdf5 import write_history
+from slosh_cli.scenario import load_scenario
+
+folder = Path(sys.argv[3])
+run = plausible_run(load_scenario(sys.argv[2]))
+write_history(run, folder / "whole.h5")
+whole = (folder / "whole.h5").stat().st_size
+hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+for limit in (0, 1, 100, 2048, *(k * whole // 16 for k in range(1, 16)), whole - 1):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
+    try:
+        write_history(run, folder / "run.h5")
+    except FileError as error:
+        assert "File too large" in str(error), error
+    else:
+        raise AssertionError(limit)
+    assert [file.name for file in folder.iterdir()] == ["whole.h5"], limit
+resource.setrlimit(resource.RLIMIT_FSIZE, (whole, hard))
+write_history(run, folder / "run.h5")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_full_disk_is_a_refusal_wherever_it_comes(tmp_path: Path) -> None:
+    """HDF5 itself ends the process with a segmentation fault, at once or when Python ends."""
+    root = Path(__file__).parents[2]
+    words = [str(Path(__file__).parent), str(root / "scenarios" / "paper_80.yaml"), str(tmp_path)]
+    run = subprocess.run([sys.executable, "-c", LIMITS, *words], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stderr == ""
+    one, other = read_history(tmp_path / "run.h5"), read_history(tmp_path / "whole.h5")
+    assert one.scenario_text == other.scenario_text
+    for name, values in one.channels.items():
+        np.testing.assert_array_equal(values, other.channels[name])

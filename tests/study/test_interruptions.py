@@ -3,11 +3,16 @@
 import json
 import random
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
+import pandas as pd
 import pytest
-from study_tools import CHEAP, begun, count, journal_rows, run_slosh, start_slosh
+from study_tools import CHEAP, PAPER, begun, count, journal_rows, run_slosh, start_slosh
+
+from slosh_cli.results.hdf5 import read_history
 
 TABLE = "outputs/cheap/braking_distance.csv"
 JOURNAL = "outputs/cheap/journal.sqlite"
@@ -96,6 +101,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(tmp_path: Path, num
     assert f"{len(kept)} of 600 stops are finished" in err
     assert "the same command goes on from there" in err
     assert len((where / TABLE).read_text().splitlines()) == 1 + len(kept)
+    assert not (where / JOURNAL).with_name("journal.lock").exists()
     assert len(begun(where)) - len(kept) <= 2  # at most the stops that were in hand are lost
 
 
@@ -139,3 +145,65 @@ def test_two_processes_on_one_study_the_second_is_told(tmp_path: Path) -> None:
     assert f"process {first.pid} on " in json.loads(out)["error"]["message"]
     assert "already working on the study" in err
     assert not (tmp_path / "second.log").read_text()
+
+
+@pytest.mark.parametrize("largest", [0, 2_000, 100_000])
+def test_a_full_disk_does_not_take_the_answer_of_a_run(tmp_path: Path, largest: int) -> None:
+    """HDF5 itself would end in a segmentation fault here."""
+    words = ["--set", "braking.initial_speed=30 km/h", "--set", "solver.tolerance=1e-2", "--set", "name=cheap"]
+    code, out, err = run_slosh(tmp_path, "run", PAPER, *words, "--json", "-o", "here", LARGEST_FILE=largest)
+    assert code == 2, err
+    assert "Traceback" not in err
+    answer = json.loads(out)
+    assert answer["status"] == "stopped"
+    assert answer["braking_distance_m"] > 0.0
+    assert "history" not in answer["files"]
+    assert ("summary" in answer["files"]) == (largest > 0)
+    assert "run.h5 could not be written" in err
+    assert sorted(file.name for file in (tmp_path / "here").iterdir()) == sorted(
+        Path(file).name for file in [*answer["files"]["figures"], *([answer["files"]["summary"]] if largest else [])]
+    )
+
+
+def test_a_full_disk_does_not_take_the_rows_of_a_sweep_with_histories(tmp_path: Path) -> None:
+    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"), LARGEST_FILE=60_000)
+    assert code == 2, err
+    assert "Traceback" not in err
+    answer = json.loads(out)
+    assert (answer["runs"], answer["done"]) == (4, 4)
+    assert any("histories: cannot write" in warning for warning in answer["warnings"])
+    table = pd.read_csv(tmp_path / answer["table"])
+    assert len(table) == 4
+    assert table["history"].isna().any()
+    for file in table["history"].dropna():
+        read_history(tmp_path / "outputs/cheap" / file)
+    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"))
+    assert code == 0, err
+    assert not pd.read_csv(tmp_path / answer["table"])["history"].isna().any()
+
+
+STREAMS = {
+    "closed": (">&- 2>&-", 0),
+    "out closed": (">&-", 0),
+    "err closed": ("2>&-", 0),
+    "err full": ("2>/dev/full", 0),
+    "out full": (">/dev/full", 2),
+}
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="streams of Linux")
+@pytest.mark.parametrize(("streams", "expected"), STREAMS.values(), ids=STREAMS)
+def test_streams_that_take_nothing_do_not_end_a_study(tmp_path: Path, streams: str, expected: int) -> None:
+    arguments = " ".join(f"'{word}'" for word in sweep(4, "--histories"))
+    start = f"'{sys.executable}' -c 'import sys; from slosh_cli.cli import main; sys.exit(main())'"
+    run = subprocess.run(
+        ["bash", "-c", f"{start} {arguments} {streams}"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == expected, run.stderr
+    assert "Traceback" not in run.stderr
+    assert "Exception ignored" not in run.stderr
+    assert ("cannot write to standard output" in run.stderr) == (expected == 2)
+    assert len(pd.read_csv(tmp_path / TABLE)) == 4
+    assert len(journal_rows(tmp_path / JOURNAL)) == 4
+    for file in (tmp_path / "outputs/cheap/histories").iterdir():
+        assert read_history(file).status == "stopped"  # nothing that was printed ended in a file

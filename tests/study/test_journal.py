@@ -14,8 +14,9 @@ import pytest
 
 from slosh_cli.errors import UsageError
 from slosh_cli.results.files import FileError
-from slosh_cli.study.journal import Journal, remove
-from slosh_cli.study.lock import LOCK, locked
+from slosh_cli.study import lock
+from slosh_cli.study.journal import JOURNAL, Journal, remove
+from slosh_cli.study.lock import LOCK, FolderInUse, locked
 from slosh_cli.study.outcome import Outcome
 
 
@@ -211,3 +212,41 @@ def test_a_folder_that_cannot_be_made_is_a_clear_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="cannot write"), locked(tmp_path / "file" / "study"):
         pass
+
+
+def test_the_locks_file_goes_with_its_holder(tmp_path: Path) -> None:
+    with locked(tmp_path):
+        assert (tmp_path / LOCK).exists()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(KeyboardInterrupt), locked(tmp_path):
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_lock_whose_file_vanished_while_it_was_taken_is_nobodys(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its holder left between the opening and the locking: two processes must not each hold a file of that name."""
+    take, turns = lock._take, []
+
+    def taken_when_the_holder_leaves(file: Any) -> None:
+        turns.append(file)
+        if len(turns) == 1:
+            (tmp_path / LOCK).unlink()
+        take(file)
+
+    monkeypatch.setattr(lock, "_take", taken_when_the_holder_leaves)
+    with locked(tmp_path):
+        assert len(turns) == 2
+        assert (tmp_path / LOCK).exists()
+        with pytest.raises(FolderInUse), locked(tmp_path):
+            pass
+
+
+def test_a_study_is_noted_and_read_back(tmp_path: Path) -> None:
+    with Journal(tmp_path / JOURNAL) as journal:
+        assert journal.study() is None
+        for values in (["5"], ["5", "10"]):
+            journal.note_study({"base": "x", "axes": {"braking.torque": values}})
+    with Journal(tmp_path / JOURNAL, read_only=True) as journal:
+        assert journal.study() == {"base": "x", "axes": {"braking.torque": ["5", "10"]}}

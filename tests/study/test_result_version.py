@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from slosh_cli.scenario import Scenario, replace
-from slosh_cli.study.key import RESULT_VERSION
+from slosh_cli.study.key import RESULT_VERSION, history_key, stop_key
 from slosh_cli.study.outcome import solve
 from slosh_cli.study.plan import Stop
 
@@ -44,6 +44,15 @@ def test_answers_are_those_of_this_result_version(paper: Scenario, number: int) 
     scenario = replace(paper, changes)
     found = solve(Stop(0, "", scenario)).answer["braking_distance_m"]
     assert found == pytest.approx(distance, rel=ACCURACY), "raise RESULT_VERSION and add its answers here"
+
+
+@pytest.mark.parametrize("model", ["rigid", "modal", "shallow-water"])
+def test_the_answer_does_not_depend_on_what_its_key_leaves_out(paper: Scenario, model: str) -> None:
+    stop = replace(paper, {"braking.torque": "10 kN m", "tank.liquid.model": model, "solver.tolerance": 1e-3})
+    other = replace(stop, {"output.interval": 0.1, "name": "another", "description": "of it"})
+    assert stop_key(stop) == stop_key(other)
+    assert history_key(stop) != history_key(other)
+    assert solve(Stop(0, "", stop)).answer == solve(Stop(0, "", other)).answer
 
 
 def test_the_liquid_of_a_real_stop_is_judged(paper: Scenario) -> None:

@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from study_tools import QuickSolver
+from study_tools import PAPER, QuickSolver
 
+import slosh_cli.results.hdf5
 from slosh_cli.errors import PhysicsError
 from slosh_cli.results.files import FileError
+from slosh_cli.results.hdf5 import read_history
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
@@ -33,7 +35,7 @@ def carry_out(study: Study, folder: Path, threads: int = 2, cancel: threading.Ev
     with Journal(folder / JOURNAL) as journal:
         planned = plan(study, journal, folder)
         stop = cancel or threading.Event()
-        done = run_study(study, planned, journal, Threads(threads), folder, cancel=stop, report=silent)
+        done = run_study(study, planned, journal, Threads(threads), cancel=stop, report=silent)
         return planned.reused, done
 
 
@@ -229,7 +231,7 @@ def test_histories_are_kept_when_asked_for(solver: QuickSolver, tmp_path: Path) 
     files = [str(row["history"]) for row in found]
     assert len(set(files)) == 16
     assert all((tmp_path / file).is_file() for file in files)
-    (tmp_path / history_file(study.stop(3).key)).unlink()
+    (tmp_path / history_file(study.stop(3).scenario)).unlink()
     assert carry_out(study, tmp_path) == (15, 1)
 
 
@@ -241,3 +243,52 @@ def test_a_stop_without_a_result_has_no_history_and_is_not_tried_for_it(solver: 
     study = build(Wishes(speeds="30", torques="5", histories=True))
     assert carry_out(study, tmp_path) == (0, 2)
     assert carry_out(study, tmp_path) == (2, 0)
+
+
+def test_a_history_that_no_longer_fits_is_written_anew(solver: QuickSolver, tmp_path: Path) -> None:
+    """Whatever a history shows is in its key: the output interval, the name; a row does not depend on either."""
+    (tmp_path / "wagon.yaml").write_text(PAPER.read_text())
+    wishes = Wishes(tmp_path / "wagon.yaml", speeds="30", torques="5", histories=True)
+    carry_out(build(wishes), tmp_path)
+    for setting in ("output.interval=20 ms", "name=another"):
+        study = build(replace(wishes, overrides=[setting]))
+        assert carry_out(study, tmp_path) == (0, 2)
+        assert carry_out(study, tmp_path) == (2, 0)
+        for row in table(study, tmp_path):
+            kept = read_history(tmp_path / str(row["history"]))
+            assert ("interval: 0.02 s" in kept.scenario_text) == ("interval" in setting)
+            assert kept.name == ("another" if "name" in setting else "paper-80-liquid")
+    assert carry_out(build(wishes), tmp_path) == (2, 0)  # the first ones are still there
+    assert len(list((tmp_path / "histories").iterdir())) == 6
+    assert len({study.stop(0).key, build(wishes).stop(0).key}) == 1
+
+
+def test_a_new_result_version_needs_new_histories(
+    solver: QuickSolver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = build(Wishes(speeds="30", torques="5", histories=True))
+    carry_out(study, tmp_path)
+    monkeypatch.setattr("slosh_cli.study.key.RESULT_VERSION", 999)
+    assert carry_out(study, tmp_path) == (0, 2)
+    assert len(list((tmp_path / "histories").iterdir())) == 4
+
+
+def test_a_history_that_cannot_be_written_costs_no_row(
+    solver: QuickSolver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = build(replace(STUDY, histories=True))
+    write, lost = slosh_cli.results.hdf5.write_history, history_file(study.stop(3).scenario)
+
+    def fails(result: Result, path: Path) -> None:
+        if path == tmp_path / lost:
+            raise FileError(f"cannot write {path}: No space left on device", str(path))
+        write(result, path)
+
+    monkeypatch.setattr(slosh_cli.results.hdf5, "write_history", fails)
+    assert carry_out(study, tmp_path) == (0, 16)
+    found = table(study, tmp_path)
+    assert len(found) == 16
+    assert ["history" in row for row in found] == [index != 3 for index in range(16)]
+    monkeypatch.setattr(slosh_cli.results.hdf5, "write_history", write)
+    assert carry_out(study, tmp_path) == (15, 1)
+    assert all("history" in row for row in table(study, tmp_path))
