@@ -40,6 +40,18 @@ def test_the_schemas_are_schemas() -> None:
         jsonschema.Draft202012Validator.check_schema(schema)
 
 
+def test_what_an_editor_offers_is_valid() -> None:
+    schema = json_schema()
+    offered = 0
+    for definition in (*schema["$defs"].values(), schema):
+        for name, entry in definition["properties"].items():
+            own = jsonschema.Draft202012Validator({**entry, "$defs": schema["$defs"]})
+            for example in [*entry.get("examples", ()), *([entry["default"]] if "default" in entry else [])]:
+                offered += 1
+                assert own.is_valid(example), f"{name}: {example!r}"
+    assert offered > 40
+
+
 @pytest.mark.parametrize("name", packaged_scenarios())
 def test_every_packaged_scenario_is_valid(name: str, scenarios: Any) -> None:
     assert faults(scenarios, packaged_scenarios()[name].read_text(encoding="utf-8")) == []
@@ -148,7 +160,8 @@ def study_of(folder: Path, text: str) -> None:
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_what_a_study_may_say_is_valid(name: str, studies: Any, tmp_path: Path) -> None:
-    text = f"base: tank-wagon\n{STUDIES[name]}"
+    base = "paper-80-liquid" if name == "an item" else "tank-wagon"  # the one with given coefficients
+    text = f"base: {base}\n{STUDIES[name]}"
     study_of(tmp_path, text)
     assert faults(studies, text) == []
 
