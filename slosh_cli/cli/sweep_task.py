@@ -130,7 +130,7 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 
 def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
-    from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study
+    from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study, verdict_lines
     from slosh_cli.study.runner import answer
     from slosh_cli.study.table import TABLE, columns, rows, write_study_table
 
@@ -147,6 +147,7 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
     figures = _draw(task, found())
     claims = claim_text(_verdicts(task, found()))
     failures = failure_lines(study, found())
+    outside = "\n".join(verdict_lines(found()))
     failed = sum(row["status"] != "stopped" for row in found())
     if task.as_json:
         _say_answer(task, written - failed, failed, planned.reused, table, figures)
@@ -158,6 +159,8 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
             say(claims)
         say("\n" + "\n".join([f"  table    {table}", *(f"  figure   {figure}" for figure in figures)]))
         say(f"{written} stops in {time.perf_counter() - task.began:.1f} s, {planned.reused} of them from the journal")
+    if outside:
+        note(outside)
     if failed:
         complain(f"{failed} of {written} stops ended without an answer:\n" + "\n".join(failures))
     return ExitCode.NO_ANSWER if failed else ExitCode.DONE
