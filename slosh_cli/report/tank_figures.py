@@ -86,7 +86,7 @@ def excitation_figure(excitation: Excitation, heading: Heading, room: float) -> 
     force.set_ylabel("force on tank,\nforward / kN")
     unit = excitation.mass * excitation.largest_deceleration / 1e3
     normalised = force.secondary_yaxis("right", functions=(lambda y: y / unit, lambda y: y * unit))
-    normalised.set_ylabel("force / (m a)")
+    normalised.set_ylabel("force / (m |a|)")
     moment.plot(time, excitation.moment / 1e3, color=INK)
     moment.set_ylabel("moment,\nnose-down / kN m")
     surface.plot(time, excitation.surface_front, **FRONT, label="front end wall")

@@ -358,7 +358,9 @@ SHAPES_AND_TYPES = (
         (11, "wagon.wheelset.wheel_radius", "is required", "nothing", "write `wheel_radius: 0.46 m`"),
     ),
     one(
-        "missing mapping", "  rail: {youngs_modulus: 200 GPa, second_moment: 3.06e-5 m^4, mass_per_length: 60 kg/m}\n", "",
+        "missing mapping",
+        "  rail: {youngs_modulus: 200 GPa, second_moment: 3.06e-5 m^4, mass_per_length: 60 kg/m}\n",
+        "",
         (
             32, "track.rail", "is required", "nothing",
             "write `rail:` with the keys youngs_modulus, second_moment and mass_per_length",
