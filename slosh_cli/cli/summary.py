@@ -69,8 +69,7 @@ def _suiting(result: Result) -> str:
     advice = result.recommendation
     if advice is None or advice.model == result.liquid_model:
         return "the one in use"
-    errors = f"{advice.error:.2f} instead of {advice.other_error:.2f}"
-    return f"{advice.model} (expected error of the force {errors} of mass times deceleration)"
+    return f"{advice.model} (expected error of the force {advice.errors} of mass times deceleration)"
 
 
 def _wheels(result: Result) -> "Table":

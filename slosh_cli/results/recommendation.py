@@ -45,6 +45,13 @@ class Recommendation:
     changeover: float
     sentence: str
 
+    @property
+    def errors(self) -> str:
+        """Both errors in words, as far as the comparisons reach; empty without a deceleration."""
+        if self.error is None or self.other_error is None:
+            return ""
+        return f"{_words(self.error)} instead of {_words(self.other_error)}"
+
     def as_dict(self) -> dict[str, object]:
         """Plain values for JSON."""
         return {

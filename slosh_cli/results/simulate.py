@@ -135,7 +135,7 @@ def recommended(scenario: Scenario) -> Recommendation | None:
 def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
     """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track, its rest."""
     tank, sentence = scenario.tank, advice.sentence if advice else ""
-    shallow = stop.model.shallow
+    shallow, braked = stop.model.shallow, run.state.counts[state.PHASE] > 0
     head = max(float(run.state.push[DEEPEST] - shallow.table.depth[-1]), 0.0) if shallow.cells else 0.0
     motion = Motion(float(run.state.surface[0]), head)
     return (
@@ -143,7 +143,7 @@ def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendatio
         *motion_checks(tank, motion, sentence),
         *checks(_extent(scenario, stop, run)),
         *wagon_checks(scenario),
-        *(rest_checks(scenario, stop, run.state) if run.outcome == advance.STOPPED else ()),
+        *(rest_checks(scenario, stop, run.state) if run.outcome == advance.STOPPED and braked else ()),
     )
 
 
