@@ -67,10 +67,11 @@ def json_schema() -> dict[str, Any]:
     own = {"$ref": contact["adhesion"]["$ref"]}
     contact["adhesion"] |= {"oneOf": [{"enum": sorted(ADHESIONS)}, own]}
     del contact["adhesion"]["$ref"]
-    contact["stiffness"].pop("default")
     for definition in (*definitions.values(), schema):
         for entry in definition["properties"].values():
-            if "default" in entry and "x-unit" in entry:
+            if entry.get("default", "") is None:  # computed: the description says how
+                del entry["default"]
+            elif "default" in entry and "x-unit" in entry:
                 entry["default"] = f"{entry['default']} {entry['x-unit']}"
             elif isinstance(entry.get("default"), dict):
                 del entry["default"]
