@@ -29,8 +29,8 @@ PERIODS = 4.0
 """Periods of the first mode that the modes are looked at for."""
 SAMPLES = 400
 """Instants per period of the fastest mode, at which its force is looked at."""
-CELL_PERIODS = 0.6
-"""Periods of the first mode that cells are carried on for: in half of one every wave has reached the wall ahead of it,
+CELL_PERIODS = 0.5
+"""Periods of the first mode that cells are carried on for: in half of one every wave reaches the wall ahead of it,
 and bores lose their height from one passage to the next."""
 CELL_SAMPLES = 60
 """Instants per period between which the mean force of the cells is looked at."""
