@@ -48,7 +48,7 @@ def judge(scenario: "Scenario | TankScenario") -> "tuple[tuple[Check, ...], Reco
     """What can be told before anything moves: verdicts, and the model of the liquid that suits."""
     from slosh_cli.results.liquid_range import expected_checks, tank_checks
     from slosh_cli.results.recommendation import deceleration_of, recommend
-    from slosh_cli.results.wagon_range import lock_check, wagon_checks
+    from slosh_cli.results.wagon_range import lock_check, speed_check, wagon_checks
     from slosh_cli.scenario import Scenario
 
     tank, deceleration = scenario.tank, deceleration_of(scenario)
@@ -57,5 +57,5 @@ def judge(scenario: "Scenario | TankScenario") -> "tuple[tuple[Check, ...], Reco
     if deceleration is not None:
         verdicts += expected_checks(tank, deceleration, advice.sentence)
     if isinstance(scenario, Scenario):
-        verdicts += (*wagon_checks(scenario), lock_check(scenario))
+        verdicts += (*wagon_checks(scenario), speed_check(scenario), lock_check(scenario))
     return verdicts, advice

@@ -44,6 +44,8 @@ WHOLE = 1 / HALF
 
 STANDING = 1e-3
 """Circumferential speed (m/s) below which a wheel under a moving wagon counts as locked in a row of the history."""
+LONGEST_INTERVAL = 0.05
+"""Time between rows (s) up to which they tell from what speed a wheel locks: to 0.2 m/s of a hard stop."""
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
@@ -162,7 +164,9 @@ def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
 
 
 def _lock_speed(stop: Problem, run: Run) -> float | None:
-    """Speed (m/s) of the wagon in the first row in which a wheel stands; None where the rows show none."""
+    """Speed (m/s) of the wagon in the first row in which a wheel stands; None where rows are rare or show none."""
+    if stop.model.control.interval > LONGEST_INTERVAL:
+        return None
     rows, radius = run.rows, stop.model.wagon.wheel_radius
     speed = rows[:, record.SPEED_COLUMN + POSITION]
     spins = rows[:, record.SPEED_COLUMN + WHEEL_SPIN :][:, : len(WHEELS)]

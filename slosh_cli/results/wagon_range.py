@@ -87,7 +87,7 @@ def shell_mass(scenario: Scenario) -> float:
 
 def _track_checks(scenario: Scenario) -> Iterator[Check]:
     ends, elements = domain_errors(scenario)
-    track, speed = scenario.track, scenario.braking.initial_speed
+    track, speed = scenario.track, _speed(scenario)
     margin = rail_reach.margin_for(track.rail, track.foundation, speed, rail_reach.TOLD)
     longer = math.ceil(_wheels(scenario) + 2.0 * margin)
     yield Check(
@@ -111,13 +111,36 @@ def _track_checks(scenario: Scenario) -> Iterator[Check]:
 
 def domain_errors(scenario: Scenario) -> tuple[float, float]:
     """Errors of the rail's deflection, as parts of it: by the ends of its domain, by the length of its elements."""
-    wagon, track, speed = scenario.wagon, scenario.track, scenario.braking.initial_speed
+    wagon, track, speed = scenario.wagon, scenario.track, _speed(scenario)
     length, element = rail_reach.computed_lengths(track, wagon.bogie.wheelbase, wagon.pivot_spacing, speed)
     margin = 0.5 * (length - _wheels(scenario))
     return (
         rail_reach.error_of_ends(track.rail, track.foundation, speed, margin),
         rail_reach.error_of_elements(track.rail, track.foundation, element),
     )
+
+
+def speed_check(scenario: Scenario) -> Check:
+    """The initial speed against the critical one, from which on no run starts."""
+    limit, speed = _critical_speed(scenario), scenario.braking.initial_speed
+    return Check(
+        "initial speed over the track's critical speed",
+        "model",
+        speed / limit,
+        1.0,
+        f"The initial speed of {speed:.1f} m/s is not below the track's critical speed of {limit:.1f} m/s: no steady "
+        "rail shape exists there, and a run will refuse to start.",
+    )
+
+
+def _critical_speed(scenario: Scenario) -> float:
+    return rail_reach.critical_speed(scenario.track.rail, scenario.track.foundation)
+
+
+def _speed(scenario: Scenario) -> float:
+    """The initial speed (m/s) where the track can bear it, standstill otherwise: no run starts from there."""
+    speed = scenario.braking.initial_speed
+    return speed if speed < _critical_speed(scenario) else 0.0
 
 
 def _wheels(scenario: Scenario) -> float:

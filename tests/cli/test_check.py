@@ -56,6 +56,12 @@ def test_the_range_of_shallow_water_is_told_before_the_run(slosh: Slosh, overrid
     assert any(said in text for text in found["warnings"]), found["warnings"]
 
 
+def test_a_speed_above_the_critical_one(slosh: Slosh) -> None:
+    """sqrt((666875 N + 2 sqrt(1e7 N/m^2 x 6.12e6 N m^2))/2000 kg/m) = 90.3 m/s."""
+    found = told(slosh, PAPER, "track.rail.mass_per_length=2000 kg/m", "braking.initial_speed=100 m/s")
+    assert any("not below the track's critical speed of 90.3 m/s" in text for text in found["warnings"])
+
+
 def test_given_coefficients_beyond_their_bound(slosh: Slosh) -> None:
     outcome = slosh("check", PAPER, "--json")
     assert any("0.9345" in text and "0.8106" in text for text in json.loads(outcome.out)["warnings"])

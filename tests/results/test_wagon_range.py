@@ -93,6 +93,19 @@ def test_wheels_that_are_bound_to_lock_do(stop, torque, locks):
         assert result.in_model_range  # what it means for the wheels says nothing against the equations
 
 
+def test_the_speed_of_the_first_lock_is_told_where_the_rows_show_it(stop):
+    """As the rows of a run have it; a study keeps too few rows to say."""
+    told, kept_back = (
+        next(text for text in stop("paper_80_solid", "braking.torque=20 kN m", *more).warnings if "Locked" in text)
+        for more in ((), ("output.interval=1 s",))
+    )
+    result = stop("paper_80_solid", "braking.torque=20 kN m")
+    still = np.abs(result.channels["wheel_4_speed"]) < 1e-3
+    assert f"the first from {3.6 * result.channels['speed'][still.argmax()]:.0f} km/h on" in told
+    assert "km/h" not in kept_back
+    assert "wheel 4 for" in kept_back
+
+
 def test_no_torque_locks_nothing(shipped):
     assert lock_check(shipped("paper_80", "braking.torque=0 N m")).value == 0.0
 
