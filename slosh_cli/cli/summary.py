@@ -50,6 +50,7 @@ def fact_rows(result: Result) -> list[tuple[str, str]]:
         ("braking time", _number(result.braking_time_s, ".2f", "s")),
         *([("surface rise at an end wall, largest", surface)] if liquid else []),
         ("within the range of its model", _range(result)),
+        *([("model of the liquid that suits", _suiting(result))] if result.recommendation else []),
         ("wheel unloading, largest", _number(100.0 * result.max_wheel_unloading, ".1f", "% (usual limit: 60 %)")),
         ("mean sum of wheel loads / weight - 1", _number(_excess(result), ".1e")),
         ("energy ledger, largest residual", _number(result.energy_residual, ".1e", "of the initial energy")),
@@ -65,6 +66,14 @@ def _range(result: Result) -> str:
     """Yes, or the checks that say no."""
     outside = [check.name for check in result.checks if check.kind == "model" and not check.within]
     return f"no: {', '.join(outside)}" if outside else "yes"
+
+
+def _suiting(result: Result) -> str:
+    """The recommended model, with the expected errors of the force on the tank where it is another one."""
+    advice = result.recommendation
+    if advice is None or advice.model == result.liquid_model:
+        return "the one in use"
+    return f"{advice.model} (expected error of the force {advice.errors} of mass times deceleration)"
 
 
 def _wheels(result: Result) -> "Table":

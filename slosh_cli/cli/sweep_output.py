@@ -1,6 +1,7 @@
 """The terminal summary of a study."""
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
@@ -9,6 +10,7 @@ from slosh_cli.cli.output import say, show
 from slosh_cli.cli.sweep_figures import name_of, text_of, unit_of
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+from slosh_cli.study.table import TABLE
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -75,6 +77,17 @@ def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
         more = f" and {len(members) - _EXAMPLES} more" if len(members) > _EXAMPLES else ""
         lines.append(f"    at {'; '.join(member['where'] for member in members[:_EXAMPLES])}{more}")
     return lines
+
+
+def verdict_lines(rows: Iterable[Row]) -> list[str]:
+    """How many stops each check warns of, most first; the warnings themselves are in the table."""
+    counts: Counter[str] = Counter()
+    stops = 0
+    for row in rows:
+        stops += 1
+        counts.update(name for name in str(row.get("not_within") or "").split("; ") if name)
+    found = [f"  {count} of {stops}: {name}" for name, count in counts.most_common()]
+    return [f"outside the limits of a check (see not_within and warnings in {TABLE}):", *found] if found else []
 
 
 def _where(study: Study, row: Row) -> str:

@@ -172,7 +172,7 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 
 def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
-    from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study
+    from slosh_cli.cli.sweep_output import claim_text, failure_lines, show_study, verdict_lines
     from slosh_cli.results.result import Status
     from slosh_cli.results.tables import write_rows
     from slosh_cli.study.runner import answer
@@ -216,6 +216,9 @@ def _conclude(task: Task, planned: "Plan", journal: "Journal", *, interrupted: b
         lines = [f"  table    {table}"] if table else []
         say("\n".join(["", *lines, *(f"  figure   {figure}" for figure in figures)]))
         say(f"{written} stops in {time.perf_counter() - task.began:.1f} s, {planned.reused} of them from the journal")
+    outside = verdict_lines(found())
+    if outside:
+        note("\n".join(outside))
     if unanswered:
         tell = complain if failed else note
         tell("\n".join([f"{unanswered} of {written} stops ended without an answer:", *failure_lines(study, found())]))

@@ -13,8 +13,9 @@ from slosh_cli.cli.keeping import Keeping, by_kind, files_text
 from slosh_cli.cli.output import say, say_json, show, warn
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.results.files import try_targets
+from slosh_cli.results.validity import plain, warnings_of
 from slosh_cli.tank.coefficients import SloshMode, tank_modes
-from slosh_cli.tank.comparison import ModeComparison, compare_modes, impossible_fractions
+from slosh_cli.tank.comparison import ModeComparison, compare_modes
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.inertia import stokes_joukowski_inertia
 from slosh_cli.tank.load import FrozenLoad, frozen_load
@@ -23,6 +24,8 @@ from slosh_cli.tank.longitudinal import LongitudinalMode, LongitudinalModes
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from slosh_cli.results.recommendation import Recommendation
+    from slosh_cli.results.validity import Check
     from slosh_cli.scenario import Scenario, TankScenario
 
 TABLE: Final = "coefficients.csv"
@@ -47,6 +50,8 @@ class Findings:
     rows: Sequence[ModeComparison]
     solved: LongitudinalModes
     lidded_inertia: float | None
+    checks: "Sequence[Check]"
+    recommendation: "Recommendation"
     warnings: Sequence[str]
 
 
@@ -76,16 +81,25 @@ def find(scenario: "Scenario | TankScenario", modes: int | None) -> Findings:
     import_module("skfem.helpers")  # with the solvers of scipy: loaded before the clock of the finite elements starts
     import_module("scipy.spatial")
     import_module("scipy.sparse.linalg")
+    from slosh_cli.results.liquid_range import coefficient_checks, expected_checks, tank_checks
+    from slosh_cli.results.recommendation import deceleration_of, recommend
+
     tank = scenario.tank
     rows = compare_modes(tank, modes)
-    warnings = list(impossible_fractions(tank))
+    deceleration = deceleration_of(scenario)
+    advice = recommend(tank, deceleration)
+    verdicts = coefficient_checks(tank)
+    verdicts += tuple(check for check in tank_checks(tank, advice.sentence) if check not in verdicts)
+    if deceleration is not None:
+        verdicts += expected_checks(tank, deceleration, advice.sentence)
+    warnings = warnings_of(verdicts)
     lidded = None
     try:
         lidded = stokes_joukowski_inertia(tank)
     except TankError as error:
         warnings.append(f"no pitch inertia of an ideal liquid under a lid: {error.message}")
     solved = tank_modes(tank, len(rows))  # kept from the comparison
-    return Findings(scenario.name, frozen_load(tank), rows, solved, lidded, warnings)
+    return Findings(scenario.name, frozen_load(tank), rows, solved, lidded, verdicts, advice, warnings)
 
 
 def as_dict(found: Findings) -> dict[str, Any]:
@@ -109,6 +123,8 @@ def as_dict(found: Findings) -> dict[str, Any]:
             "unknowns": found.solved.unknowns,
         },
         "solve_seconds": found.solved.solve_seconds,
+        "checks": plain(found.checks),
+        "recommendation": found.recommendation.as_dict(),
         "warnings": list(found.warnings),
     }
 
@@ -122,7 +138,7 @@ def _show(found: Findings) -> None:
     from rich.text import Text
 
     alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in found.warnings]
-    show(_facts(found), "", _modes(found), *([""] if alarms else []), *alarms)
+    show(_facts(found), "", _modes(found), "", *alarms, Text(found.recommendation.sentence))
 
 
 def _facts(found: Findings) -> "Table":

@@ -14,9 +14,12 @@ from slosh_cli.cli.progress import announce_compilation
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.results.files import try_targets
+from slosh_cli.results.validity import plain, warnings_of
 from slosh_cli.scenario import parse_quantity
 
 if TYPE_CHECKING:
+    from slosh_cli.results.recommendation import Recommendation
+    from slosh_cli.results.validity import Check
     from slosh_cli.scenario import Scenario, TankScenario
     from slosh_cli.scenario.csv_table import Table
     from slosh_cli.solver.excite import Deceleration, Excitation
@@ -64,10 +67,15 @@ def run_excitation(
     if found.time.size < 2:
         complain(f"failed: {found.reason}. {REMEDY}")
         return ExitCode.NO_ANSWER
-    warnings = _warnings(scenario, found)
-    answer = summary(scenario, found) | {"warnings": warnings}
+    verdicts, advice = judge(scenario, found)
+    warnings = warnings_of(verdicts)
+    answer = summary(scenario, found) | {
+        "checks": plain(verdicts),
+        "recommendation": advice.as_dict() if advice else None,
+        "warnings": warnings,
+    }
     if not as_json:
-        _show(scenario, found, warnings)
+        _show(scenario, found, answer)
     keeping = Keeping()
     files = _write(scenario, found, answer | {"settings": settings}, folder, keeping)
     if as_json:
@@ -82,20 +90,40 @@ def run_excitation(
 
 
 def summary(scenario: "Scenario | TankScenario", found: "Excitation") -> dict[str, Any]:
-    """The peaks as the JSON object has them."""
+    """The peaks as the JSON object has them: `max_...` is the extreme of the magnitude, in either direction."""
+    from slosh_cli.solver.excite import extreme
+
     return {
         "name": scenario.name,
         "liquid_model": scenario.tank.liquid.model,
-        "max_normalised_force": float(found.normalised_force.max()),
+        "max_normalised_force": extreme(found.normalised_force),
         "min_normalised_force": float(found.normalised_force.min()),
         "max_surface_m": found.max_surface,
         "surface_limit_m": _room(scenario),
-        "max_moment_N_m": float(found.moment.max()),
+        "max_moment_N_m": extreme(found.moment),
         "liquid_mass_kg": found.mass,
         "mass_error": found.mass_error,
         "accuracy": found.accuracy,
         "reason": found.reason,
     }
+
+
+def judge(
+    scenario: "Scenario | TankScenario", found: "Excitation"
+) -> "tuple[tuple[Check, ...], Recommendation | None]":
+    """Whether the liquid stayed in the range of its model, and which model suits tank and deceleration.
+
+    None for a load that is frozen on purpose.
+    """
+    from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
+    from slosh_cli.results.recommendation import recommend
+
+    tank = scenario.tank
+    if tank.liquid.model == "rigid":
+        return (), None
+    advice = recommend(tank, found.largest_deceleration)
+    motion = Motion(abs(found.max_surface), found.largest_head)
+    return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
 
 
 def _times(wishes: Wishes) -> tuple[float, float]:
@@ -164,24 +192,6 @@ def _room(scenario: "Scenario | TankScenario") -> float:
     return scenario.tank.height * (1.0 - scenario.tank.fill)
 
 
-def _warnings(scenario: "Scenario | TankScenario", found: "Excitation") -> list[str]:
-    """What a reader must know before using the numbers."""
-    from slosh_cli.tank.comparison import impossible_fractions
-
-    tank = scenario.tank
-    if tank.liquid.model != "modal":
-        return []
-    warnings = list(impossible_fractions(tank))
-    room, depth = _room(scenario), tank.height * tank.fill
-    if found.max_surface > min(room, depth):
-        warnings.append(
-            f"the surface moves by {found.max_surface:.2f} m at the end walls, but there is {room:.2f} m of room above "
-            f"it and {depth:.2f} m of liquid below: outside the linear theory of the modal liquid; compare with "
-            "--set tank.liquid.model=shallow-water"
-        )
-    return warnings
-
-
 def _settings(wishes: Wishes) -> str:
     """What an excitation is told apart by, next to its scenario."""
     content = None if wishes.table is None else hashlib.sha256(wishes.table.read_bytes()).hexdigest()
@@ -215,13 +225,17 @@ def _write(
     rows = [dict(zip(("time_s", *columns), map(float, row), strict=True)) for row in values]
     channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
     channels |= dict(columns.values())
-    facts = {key: "\n".join(value) if isinstance(value, list) else value for key, value in facts.items()}
+    words, warnings = _words(scenario, found), facts["warnings"]
+    facts = facts | {
+        "warnings": "\n".join(warnings),
+        "checks": json.dumps(facts["checks"]),
+        "recommendation": (facts["recommendation"] or {}).get("sentence", ""),
+    }
 
     def draw(folder: Path) -> None:
         from slosh_cli.report.tank_figures import Heading, draw_excitation
 
-        heading = Heading("Tank under deceleration", _words(scenario, found))
-        draw_excitation(found, heading, _room(scenario), folder)
+        draw_excitation(found, Heading("Tank under deceleration", words, warnings), _room(scenario), folder)
 
     numbers: dict[str, Callable[[Path], object]] = {
         TABLE: lambda path: write_table(rows, path),
@@ -231,30 +245,36 @@ def _write(
 
 
 def _words(scenario: "Scenario | TankScenario", found: "Excitation") -> str:
+    from slosh_cli.solver.excite import extreme
+
     tank = scenario.tank
     return (
         f"{scenario.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
-        f"liquid: {tank.liquid.model}, up to {found.largest_deceleration:.4g} m/s²"
+        f"liquid: {tank.liquid.model}, up to {extreme(found.deceleration):.4g} m/s²"
     )
 
 
-def _show(scenario: "Scenario | TankScenario", found: "Excitation", warnings: Sequence[str]) -> None:
+def _show(scenario: "Scenario | TankScenario", found: "Excitation", answer: dict[str, Any]) -> None:
     from rich.table import Table
     from rich.text import Text
+
+    from slosh_cli.solver.excite import extreme
 
     number: Callable[[float, str], str] = lambda value, unit: f"{value:.5g} {unit}".rstrip()  # noqa: E731
     table = Table.grid(padding=(0, 2))
     table.title, table.title_justify, table.title_style = _words(scenario, found), "left", "bold"
-    normalised = found.normalised_force
+    room, depth = _room(scenario), scenario.tank.height * scenario.tank.fill
     for row in (
-        ("force / (m a), largest", number(float(normalised.max()), "")),
-        ("force / (m a), least", number(float(normalised.min()), "")),
-        ("force, largest", number(float(found.force.max()) / 1e3, "kN")),
-        ("moment about the bottom centre, largest", number(float(found.moment.max()) / 1e3, "kN m")),
-        ("surface rise at an end wall, largest", f"{found.max_surface:.3f} m (room: {_room(scenario):.2f} m)"),
+        ("force / (m |a|), largest in magnitude", number(answer["max_normalised_force"], "")),
+        ("force / (m |a|), least", number(answer["min_normalised_force"], "")),
+        ("force, largest in magnitude", number(extreme(found.force) / 1e3, "kN (forward +)")),
+        ("moment about the bottom centre, likewise", number(answer["max_moment_N_m"] / 1e3, "kN m (nose-down +)")),
+        ("surface at an end wall, likewise", f"{found.max_surface:+.3f} m (room: {room:.2f} m, depth: {depth:.2f} m)"),
         ("mass error", f"{found.mass_error:.1e}"),
         ("last change of the histories", f"{found.accuracy:.1e}"),
     ):
         table.add_row(*row)
-    alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in warnings]
+    alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in answer["warnings"]]
+    if not alarms and answer["recommendation"]:
+        alarms = [Text(answer["recommendation"]["sentence"])]
     show(table, *([""] if alarms else []), *alarms)

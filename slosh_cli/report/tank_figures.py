@@ -6,6 +6,7 @@ Lines differ in dash and lightness, the potential is drawn in lightness with con
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,16 +36,19 @@ MODE_LOOKS: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#4a98c9", "linestyle": (0, (6, 2, 1, 2))},
     {"color": "#7a7a7a", "linestyle": (0, (1.5, 1.2))},
 )
+WARNING_WIDTH: Final = 12.6
+"""Characters of a warning per inch of a figure's width."""
 SURFACE_SHARE: Final = 0.16
 """The drawn rise of a mode's surface, as a share of the section's height."""
 
 
 @dataclass(frozen=True)
 class Heading:
-    """What stands above a figure: what it shows, and of what."""
+    """What stands above a figure: what it shows, and of what; below it what to know before believing it."""
 
     title: str
     conditions: str
+    warnings: Sequence[str] = ()
 
 
 def draw_excitation(
@@ -82,13 +86,13 @@ def excitation_figure(excitation: Excitation, heading: Heading, room: float) -> 
     force.set_ylabel("force on tank,\nforward / kN")
     unit = excitation.mass * excitation.largest_deceleration / 1e3
     normalised = force.secondary_yaxis("right", functions=(lambda y: y / unit, lambda y: y * unit))
-    normalised.set_ylabel("force / (m a)")
+    normalised.set_ylabel("force / (m |a|)")
     moment.plot(time, excitation.moment / 1e3, color=INK)
     moment.set_ylabel("moment,\nnose-down / kN m")
     surface.plot(time, excitation.surface_front, **FRONT, label="front end wall")
     surface.plot(time, excitation.surface_rear, **REAR, label="rear end wall")
     surface.set_ylabel("surface rise / m")
-    if excitation.max_surface > 0.4 * room:
+    if max(float(rise.max()) for rise in (excitation.surface_front, excitation.surface_rear)) > 0.4 * room:
         surface.axhline(room, color=MUTED, linewidth=1.4, linestyle=":", label=f"roof, {room:.2f} m above still level")
     surface.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
     surface.set_xlabel("time / s")
@@ -188,15 +192,26 @@ def _outline(tank: TankGeometry, height: float) -> tuple[Floats, Floats]:
 
 
 def _headed(heading: Heading, size: tuple[float, float], head: float = 0.95) -> Figure:
-    """A figure of `size` (inches) with its head written; `head` inches stay free for it."""
+    """A figure of `size` (inches) with its head written; `head` inches stay free for it, and some for its warnings."""
     width, height = size
-    figure = Figure(figsize=size, dpi=figures.RESOLUTION)
+    lines = [
+        line for text in heading.warnings for line in textwrap.wrap(f"Warning: {text}", int(WARNING_WIDTH * width))
+    ]
+    foot = 0.195 * len(lines) + 0.1 * bool(lines)
+    height += foot
+    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION)
     figure.text(0.014, 1.0 - 0.14 / height, heading.title, fontsize=17, fontweight="bold", color=INK, va="top")
     figure.text(
         0.014, 1.0 - 0.5 / height, _shortened(heading.conditions, int(11.5 * width)), fontsize=12.5, color=MUTED,
         va="top", parse_math=False,
     )  # fmt: skip
-    figure.set_layout_engine("constrained", rect=(0.008, 0.008, 0.984, 1.0 - head / height))
+    if lines:
+        figure.text(
+            0.014, 0.08 / height, "\n".join(lines), fontsize=10.5, color=figures.ALARM, va="bottom", linespacing=1.3,
+            parse_math=False,
+        )  # fmt: skip
+    below = 0.008 + foot / height
+    figure.set_layout_engine("constrained", rect=(0.008, below, 0.984, 1.0 - head / height - foot / height))
     return figure
 
 

@@ -22,6 +22,7 @@ from slosh_cli.results.channels import TIME, Channel, channel, is_channel
 from slosh_cli.results.files import FileError, replacing
 from slosh_cli.results.result import PerWheel, Result, Status, Vector, frame
 from slosh_cli.results.stored import NEEDED, faults_of_attributes, faults_of_columns, faults_of_shape
+from slosh_cli.results.validity import plain
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
@@ -303,7 +304,8 @@ def _attributes(result: Result) -> dict[str, Any]:
     summary = result.summary() | {
         "reason": result.reason,
         "warnings": "\n".join(" ".join(warning.split()) for warning in result.warnings),
-        "checks": json.dumps([check.as_dict() for check in result.checks]),
+        "checks": json.dumps(plain(result.checks)),
+        "recommendation": result.recommendation.sentence if result.recommendation else "",
         "onset_s": result.onset_s,
         "static_wheel_load_N": list(result.static_wheel_load_N),
         "mean_total_wheel_load_N": result.mean_total_wheel_load_N,

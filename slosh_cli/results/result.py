@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.results.channels import TIME, channel
-from slosh_cli.results.validity import Check
+from slosh_cli.results.validity import Check, plain
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from slosh_cli.results.recommendation import Recommendation
     from slosh_cli.scenario import Scenario
 
 Vector = NDArray[np.float64]
@@ -65,6 +66,7 @@ class Result:
     braking_distance_m, braking_time_s: from the onset to the stop speed; None when the wagon did not stop.
     max_surface_m: largest rise of the free surface at an end wall; surface_limit_m: the room above it.
     min_wheel_load_N, max_wheel_load_N: extremes from onset to stop, from the integrator's own steps.
+    recommendation: the model of the liquid that suits the stop; None for a rigid load.
     energy_residual: largest over the run, relative to the initial kinetic energy; energy: final ledger in J.
     work: counts of Newton iterations, factorisations, right-hand sides, events.
 
@@ -76,6 +78,7 @@ class Result:
     reason: str = ""
     warnings: tuple[str, ...] = ()
     checks: tuple[Check, ...] = ()
+    recommendation: "Recommendation | None" = None
     time: Vector = field(repr=False)
     channels: Mapping[str, Vector] = field(repr=False)
     braking_distance_m: float | None
@@ -175,8 +178,9 @@ class Result:
             "rejected_steps": self.rejected_steps,
             "solve_seconds": self.solve_seconds,
             "in_model_range": self.in_model_range,
-            "checks": [check.as_dict() for check in self.checks],
+            "checks": plain(self.checks),
             "warnings": [*self.warnings, *([self.reason] if self.reason else [])],
+            **({"recommendation": self.recommendation.as_dict()} if self.recommendation else {}),
         }
 
 

@@ -9,8 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
+from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
+from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import PerWheel, Result, Status
-from slosh_cli.results.validity import Extent, checks, warnings_of
+from slosh_cli.results.validity import Check, Extent, checks, warnings_of
+from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import advance, record, state
 from slosh_cli.solver.cells import DEEPEST
@@ -20,7 +24,6 @@ from slosh_cli.solver.setup import HALF, Problem, problem
 from slosh_cli.solver.state import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.section import section_of
-from slosh_cli.tank.still import frequency_excess
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.wagon.coordinates import (
     BOGIE_HEAVE,
@@ -38,6 +41,11 @@ Array = NDArray[np.float64]
 
 WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
+
+STANDING = 1e-3
+"""Circumferential speed (m/s) below which a wheel under a moving wagon counts as locked in a row of the history."""
+LONGEST_INTERVAL = 0.05
+"""Time between rows (s) up to which they tell from what speed a wheel locks: to 0.2 m/s of a hard stop."""
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
@@ -75,13 +83,15 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     if status is Status.STOPPED and not onset:
         status, reason = Status.FAILED, "came to rest at t = {time:.4g} s, before the brake set in: no braking distance"
     tank, weight = scenario.tank, stop.weight
-    verdicts = checks(_extent(scenario, stop, run))
+    advice = recommended(scenario)
+    verdicts = _verdicts(scenario, stop, run, advice)
     return Result(
         scenario=scenario,
         status=status,
         reason=reason.format(time=clock[state.TIME], speed=run.state.start.v[POSITION]),
-        warnings=(*warnings_of(verdicts), *_fraction_warnings(stop, frozen_load(tank).mass)),
+        warnings=tuple(warnings_of(verdicts)),
         checks=verdicts,
+        recommendation=advice,
         time=run.rows[:, record.TIME_COLUMN],
         channels=_channels(scenario, stop, run),
         braking_distance_m=float(run.state.start.q[POSITION] - clock[state.ONSET_POSITION]) if stopped else None,
@@ -117,36 +127,51 @@ def _mean_load(run: Run, weight: float) -> float:
     return float(impulse / seconds) if seconds > 0 else weight
 
 
-def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
-    """What the verdicts on a run look at."""
-    tank, section = scenario.tank, section_of(scenario.tank)
-    depth = section.height * tank.fill
-    least = np.minimum(run.state.least, stop.static_loads)
-    return Extent(
-        liquid_model=tank.liquid.model,
-        rise=float(run.state.surface[0]),
-        room=section.height - depth,
-        depth=depth,
-        frequency_excess=frequency_excess(tank, GRAVITY) if stop.model.shallow.cells else 0.0,
-        head=max(float(run.state.push[DEEPEST] - stop.model.shallow.table.depth[-1]), 0.0),
-        unloading=float(np.max(1 - least / stop.static_loads)),
-        lifts=int(run.state.lifted[0]),
-        pitch_limit=run.outcome == advance.PITCH_LIMIT,
-        residual=float(run.state.residual[2]),
+def recommended(scenario: Scenario) -> Recommendation | None:
+    """The model of the liquid that suits this stop; None for a load that is frozen on purpose."""
+    if scenario.tank.liquid.model == "rigid":
+        return None
+    return recommend(scenario.tank, stop_deceleration(scenario))
+
+
+def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
+    """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track, its rest."""
+    tank, sentence = scenario.tank, advice.sentence if advice else ""
+    shallow, braked = stop.model.shallow, run.state.counts[state.PHASE] > 0
+    head = max(float(run.state.push[DEEPEST] - shallow.table.depth[-1]), 0.0) if shallow.cells else 0.0
+    motion = Motion(float(run.state.surface[0]), head)
+    return (
+        *tank_checks(tank, sentence),
+        *motion_checks(tank, motion, sentence),
+        *checks(_extent(scenario, stop, run)),
+        *wagon_checks(scenario),
+        *(rest_checks(scenario, stop, run.state) if run.outcome == advance.STOPPED and braked else ()),
     )
 
 
-def _fraction_warnings(stop: Problem, liquid_mass: float) -> list[str]:
-    """Coefficients that no prismatic tank with flat ends can have (model section 4)."""
-    liquid = stop.model.liquid
-    bound = 8 / np.pi**2
-    fraction = float(np.max(liquid.lambda_1**2 / liquid.mu, initial=0.0)) / (HALF * liquid_mass)
-    if fraction <= bound * (1 + 1e-6):
-        return []
-    return [
-        f"The given slosh coefficients move {fraction:.4f} of the liquid's mass in one mode; with flat ends it is at "
-        f"most 8/pi^2 = {bound:.4f}. Compare with tank.coefficients: computed."
-    ]
+def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
+    """What the verdicts on the run as a whole look at."""
+    least, lifts = np.minimum(run.state.least, stop.static_loads), int(run.state.lifted[0])
+    return Extent(
+        unloading=float(np.max(1 - least / stop.static_loads)),
+        lifts=lifts,
+        pitched=run.outcome == advance.PITCH_LIMIT,
+        residual=float(run.state.residual[2]),
+        residual_cause=residual_cause(scenario, lifts),
+        locked=_per_wheel(run.state.locked_time),
+        lock_speed=_lock_speed(stop, run),
+    )
+
+
+def _lock_speed(stop: Problem, run: Run) -> float | None:
+    """Speed (m/s) of the wagon in the first row in which a wheel stands; None where rows are rare or show none."""
+    if stop.model.control.interval > LONGEST_INTERVAL:
+        return None
+    rows, radius = run.rows, stop.model.wagon.wheel_radius
+    speed = rows[:, record.SPEED_COLUMN + POSITION]
+    spins = rows[:, record.SPEED_COLUMN + WHEEL_SPIN :][:, : len(WHEELS)]
+    standing = (np.abs(radius * spins) < STANDING).any(axis=1) & (speed > STANDING)
+    return float(speed[standing.argmax()]) if standing.any() else None
 
 
 def _final_energy(run: Run) -> dict[str, float]:

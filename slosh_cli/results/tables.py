@@ -45,6 +45,7 @@ def summary_row(result: Result) -> dict[str, Any]:
         "rejected_steps": result.rejected_steps,
         "solve_seconds": result.solve_seconds,
         "in_model_range": result.in_model_range,
+        "not_within": "; ".join(check.name for check in result.checks if not check.within),
         "reason": result.reason,
         "warnings": "; ".join(result.warnings),
     }

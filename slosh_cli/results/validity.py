@@ -1,4 +1,8 @@
-"""Is a run inside the range of its own model? The verdicts that go with every result."""
+"""Is an answer inside the range of its own model? The verdicts that go with every result.
+
+A verdict belongs to what it speaks of, so that every command that has the number has the verdict: of a liquid and its
+tank in `liquid_range`, of a wagon and its track in `wagon_range`, of a whole run here.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +12,21 @@ from typing import Literal
 
 UNLOADING_LIMIT = 0.6
 """Usual limit of the wheel unloading dQ/Q0: EN 14363, assessment of safety against derailment on twisted track."""
-FREQUENCY_LIMIT = 0.05
-"""Shallow water is used where its first frequency is this close to potential flow's."""
 LEDGER_LIMIT = 1e-3
 """An energy residual above this part of the initial kinetic energy is worth a warning."""
+PITCH_CHECK = "pitch beyond small angles"
 
 
 @dataclass(frozen=True)
 class Check:
     """One verdict: `value` beside `limit`, and what it means where it is exceeded.
 
-    `kind` is "model" where the equations themselves end, "accuracy" for the integration, "operation" for a limit that
-    railways set themselves.
+    `kind` is "model" where the equations themselves end, "accuracy" for the integration, "operation" for what railways
+    limit or have to deal with, "input" for a value that is probably not what was meant.
     """
 
     name: str
-    kind: Literal["model", "accuracy", "operation"]
+    kind: Literal["model", "accuracy", "operation", "input"]
     value: float
     limit: float
     meaning: str
@@ -40,55 +43,27 @@ class Check:
 
 @dataclass(frozen=True)
 class Extent:
-    """What the verdicts look at: surface rise, room above and depth below the still surface (m), how much too high the
-    first frequency of shallow water is, its largest head of pressure under the roof (m), largest wheel unloading, wheel
-    lift-offs, largest ledger residual."""
+    """What the verdicts on a run as a whole look at.
 
-    liquid_model: str
-    rise: float
-    room: float
-    depth: float
-    frequency_excess: float
-    head: float
+    Largest wheel unloading, wheel lift-offs, whether the run ended at the limit of small angles, largest ledger
+    residual and what to do about it, seconds that each wheel was locked and the wagon's speed (m/s) at the first lock.
+    """
+
     unloading: float
     lifts: int
-    pitch_limit: bool
+    pitched: bool
     residual: float
+    residual_cause: str
+    locked: Sequence[float]
+    lock_speed: float | None
 
 
 def checks(extent: Extent) -> tuple[Check, ...]:
-    """All verdicts on a run."""
+    """All verdicts on a run as a whole."""
     return tuple(_checks(extent))
 
 
 def _checks(x: Extent) -> Iterator[Check]:
-    if x.liquid_model == "modal":
-        yield Check(
-            "surface rise over the room above and below",
-            "model",
-            x.rise / min(x.room, x.depth),
-            1.0,
-            f"The surface moves by {x.rise:.2f} m at the end walls, but there is {x.room:.2f} m of room above it and "
-            f"{x.depth:.2f} m of liquid below: this stop lies outside the linear theory of the modal liquid, which "
-            "then overstates the shift of weight. Compare with tank.liquid.model: shallow-water.",
-        )
-    if x.liquid_model == "shallow-water":
-        yield Check(
-            "excess of the first slosh frequency",
-            "model",
-            x.frequency_excess,
-            FREQUENCY_LIMIT,
-            f"Shallow water overstates the first slosh frequency of this tank by {x.frequency_excess:.1%}: it is too "
-            "deep for its length. Compare with tank.liquid.model: modal at small surface rise.",
-        )
-        yield Check(
-            "head of pressure under the roof",
-            "accuracy",
-            x.head,
-            0.0,
-            f"The liquid struck the roof (head up to {x.head:.1f} m): peak forces and wheel loads depend on "
-            "tank.liquid.slot_speed there; the braking distance hardly does.",
-        )
     yield Check(
         "wheels lifted off",
         "model",
@@ -98,9 +73,9 @@ def _checks(x: Extent) -> Iterator[Check]:
         "use the braking distance, not max_wheel_load_N.",
     )
     yield Check(
-        "pitch beyond small angles",
+        PITCH_CHECK,
         "model",
-        float(x.pitch_limit),
+        float(x.pitched),
         0.0,
         "A pitch angle passed 0.1 rad; small-angle kinematics say nothing beyond, and the run ended there.",
     )
@@ -109,8 +84,7 @@ def _checks(x: Extent) -> Iterator[Check]:
         "accuracy",
         x.residual,
         LEDGER_LIMIT,
-        f"The energy ledger misses {x.residual:.1e} of the initial kinetic energy: lower solver.tolerance or refine "
-        "track.domain.element_length.",
+        f"The energy ledger misses {x.residual:.1e} of the initial kinetic energy: {x.residual_cause}.",
     )
     yield Check(
         "wheel unloading",
@@ -120,8 +94,21 @@ def _checks(x: Extent) -> Iterator[Check]:
         f"The largest wheel unloading is {x.unloading:.2f} of the static load; the usual limit is {UNLOADING_LIMIT} "
         "(EN 14363).",
     )
+    yield Check("locked wheels", "operation", max(x.locked), 0.0, _locked_words(x))
+
+
+def _locked_words(x: Extent) -> str:
+    """Which wheels slid, for how long and from what speed."""
+    wheels = ", ".join(f"wheel {i} for {seconds:.2f} s" for i, seconds in enumerate(x.locked, 1) if seconds > 0.0)
+    since = "" if x.lock_speed is None else f", the first from {3.6 * x.lock_speed:.0f} km/h on"
+    return f"Locked wheels slide on the rail and wear flat: {wheels}{since}."
 
 
 def warnings_of(verdicts: Sequence[Check]) -> list[str]:
-    """What to tell about the verdicts that are not within their limits; the pitch limit is told by the run's reason."""
-    return [check.meaning for check in verdicts if not check.within and check.name != "pitch beyond small angles"]
+    """What to tell about the verdicts that are not within their limits; the end at large pitch is the run's reason."""
+    return [check.meaning for check in verdicts if not check.within and check.name != PITCH_CHECK]
+
+
+def plain(verdicts: Sequence[Check]) -> list[dict[str, object]]:
+    """The verdicts as JSON and HDF5 have them."""
+    return [check.as_dict() for check in verdicts]

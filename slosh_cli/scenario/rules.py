@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
+from slosh_cli.scenario import rail_reach
 from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.schema_run import Foundation, Rail
 from slosh_cli.scenario.units import STANDARD_GRAVITY, at_least, at_most, shown
 
-DOMAIN_MARGIN: Final = 5.0
-"""Least length of rail ahead of the first and behind the last wheel, m."""
 HIGHEST_TANK: Final = 7.0
 """Above every loading gauge in use, m."""
 WIDEST_TANK: Final = 5.0
@@ -109,25 +109,55 @@ def _bogies_apart(v: Values) -> Iterator[Finding]:
 
 
 def _domain_holds_wagon(v: Values) -> Iterator[Finding]:
+    """The rail's ends must be so far from the wheels that they change the deflection there by less than 1 %."""
     if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing", "track.domain.length"):
         return
     wheels = v["wagon.pivot_spacing"] + v["wagon.bogie.wheelbase"]
-    needed, length = wheels + 2.0 * DOMAIN_MARGIN, v["track.domain.length"]
-    if length < needed:
-        rule = f"must hold the wheels, {shown(wheels)} m apart, and {shown(DOMAIN_MARGIN)} m more at either end"
-        yield _finding("track.domain.length", rule, _metres(length), f"write at least `{at_least(needed)} m`")
+    margin, length = _margin(v), v["track.domain.length"]
+    needed = _rounded_up(wheels + 2.0 * margin) if math.isfinite(margin) else math.inf
+    if needed > rail_reach.LONGEST:
+        speed = v["braking.initial_speed"]
+        rule = "must stay further below the track's critical speed: the rail's wave hardly fades"
+        fix = "write a lower initial speed, or a stiffer or better damped foundation"
+        yield _finding("braking.initial_speed", rule, f"`{shown(speed)} m/s`", fix)
+    elif length is not None and length < needed:
+        rule = f"must hold the wheels, {shown(wheels)} m apart, and {shown(_rounded_up(margin))} m more at either end"
+        if margin > rail_reach.LEAST_MARGIN:
+            rule += ", or the rail's ends change its deflection on this track by more than 1 %"
+        yield _finding("track.domain.length", rule, _metres(length), f"write at least `{shown(needed)} m`")
+
+
+def _margin(v: Values) -> float:
+    """Least length of rail beyond the outer wheels, m: by the track where it is known."""
+    rail, foundation = (
+        {name: v.values.get(f"{prefix}{name}") for name in part.model_fields}
+        for part, prefix in ((Rail, "track.rail."), (Foundation, "track.foundation."))
+    )
+    speed = v.values.get("braking.initial_speed")
+    if speed is None or None in (*rail.values(), *foundation.values()):
+        return rail_reach.LEAST_MARGIN
+    beam, bed = Rail.model_construct(**rail), Foundation.model_construct(**foundation)
+    speed = speed if speed < rail_reach.critical_speed(beam, bed) else 0.0  # beyond it the solver has its say
+    return rail_reach.margin_for(beam, bed, speed, rail_reach.REFUSED)
+
+
+def _rounded_up(metres: float) -> float:
+    return math.ceil(10.0 * metres - 1e-9) / 10.0
 
 
 def _elements(v: Values) -> Iterator[Finding]:
     key = "track.domain.element_length"
-    if v.has(key, "wagon.bogie.wheelbase") and v[key] > 0.5 * v["wagon.bogie.wheelbase"]:
+    element, length = v.values.get(key), v.values.get("track.domain.length")
+    if element is None:
+        return
+    if v.has("wagon.bogie.wheelbase") and element > 0.5 * v["wagon.bogie.wheelbase"]:
         most = 0.5 * v["wagon.bogie.wheelbase"]
         rule = f"must be at most half the wheelbase, {at_most(most)} m"
-        yield _finding(key, rule, _metres(v[key]), f"write `{at_most(most)} m` or less")
-    if v.has(key, "track.domain.length") and v[key] < v["track.domain.length"] / MOST_ELEMENTS:
-        rule = f"must give at most {MOST_ELEMENTS} elements over {shown(v['track.domain.length'])} m"
-        least = v["track.domain.length"] / MOST_ELEMENTS
-        yield _finding(key, rule, _metres(v[key]), f"write `{at_least(least)} m` or more")
+        yield _finding(key, rule, _metres(element), f"write `{at_most(most)} m` or less")
+    if length is not None and element < length / MOST_ELEMENTS:
+        rule = f"must give at most {MOST_ELEMENTS} elements over {shown(length)} m"
+        least = length / MOST_ELEMENTS
+        yield _finding(key, rule, _metres(element), f"write `{at_least(least)} m` or more")
 
 
 def _adhesion(v: Values) -> Iterator[Finding]:

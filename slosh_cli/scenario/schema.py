@@ -79,10 +79,11 @@ def json_schema() -> dict[str, Any]:
     mu0 = {"anyOf": definitions["Adhesion"]["properties"]["mu0"]["anyOf"]}
     contact["adhesion"] |= {"anyOf": [{"enum": sorted(ADHESIONS)}, mu0, own]}
     del contact["adhesion"]["$ref"]
-    contact["stiffness"].pop("default")
     for definition in (*definitions.values(), schema):
         for entry in definition["properties"].values():
-            if "default" in entry and "x-unit" in entry:
+            if entry.get("default", "") is None:  # computed: the description says how
+                del entry["default"]
+            elif "default" in entry and "x-unit" in entry:
                 entry["default"] = f"{entry['default']} {entry['x-unit']}"
             elif isinstance(entry.get("default"), dict):
                 del entry["default"]

@@ -44,11 +44,15 @@ class Foundation(Part):
 class Domain(Part):
     """The stretch of rail that moves with the wagon."""
 
-    length: Annotated[float, Quantity("length", Range(5.0, 1000.0), "50 m")] = Field(
-        description="Length of the stretch; the rail does not deflect at its ends, m."
+    length: Annotated[float | None, Quantity("length", Range(5.0, 1000.0), "50 m")] = Field(
+        default=None,
+        description="Length of the stretch; the rail does not deflect at its ends, m. "
+        "Default: as long as this track needs to change the deflection under the wheels by less than 1e-6.",
     )
-    element_length: Annotated[float, Quantity("length", Range(0.01, 5.0), "0.5 m")] = Field(
-        description="Length of a beam element aimed at (the mesh is fitted to the wheels), m."
+    element_length: Annotated[float | None, Quantity("length", Range(0.01, 5.0), "0.5 m")] = Field(
+        default=None,
+        description="Length of a beam element aimed at (the mesh is fitted to the wheels), m. "
+        "Default: 0.4 of the length in which a load's deflection fades, (4 EI/k)^(1/4), at most half the wheelbase.",
     )
 
 
@@ -57,7 +61,7 @@ class Track(Part):
 
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
-    domain: Domain = Field(description="How much of it is computed, and how finely.")
+    domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")
 
 
 _FRICTION: Final = Number(Range(0.005, 1.5), "0.55")

@@ -106,7 +106,8 @@ class Excitation:
     (n,). Of a shallow-water liquid force and moment are means over the output interval around each time. `mass` kg of
     liquid, `largest_deceleration` m/s^2, `mass_error` the largest change of the liquid's mass, as a share of it;
     `accuracy` is what the modes' histories still changed by with the last halving of the steps, relative, and zero for
-    the other liquids. `reason` says why the history ends early, empty when it does not.
+    the other liquids. `largest_head` m is the largest head of pressure above the roof at an end wall. `reason` says why
+    the history ends early, empty when it does not.
     """
 
     time: Array
@@ -119,6 +120,7 @@ class Excitation:
     largest_deceleration: float
     mass_error: float = 0.0
     accuracy: float = 0.0
+    largest_head: float = 0.0
     reason: str = ""
 
     @property
@@ -128,8 +130,14 @@ class Excitation:
 
     @property
     def max_surface(self) -> float:
-        """Largest rise of the surface at an end wall, m."""
-        return float(max(self.surface_front.max(), self.surface_rear.max()))
+        """Largest change of the level at an end wall, m, a fall with its sign; a rise where both are equal."""
+        return extreme(np.concatenate([self.surface_front, self.surface_rear]))
+
+
+def extreme(values: Array) -> float:
+    """The value of the largest magnitude with its sign, the positive one of two that are equally large."""
+    high, low = float(values.max()), float(values.min())
+    return low if -low > high else high
 
 
 class ExcitedLiquid(SloshLiquid, FlowingLiquid, Protocol):
@@ -263,5 +271,6 @@ def _excite_cells(
         mass=liquid.mass,
         largest_deceleration=largest,
         mass_error=float(np.abs(rows[:done, 4] / volume - 1.0).max(initial=0.0)),
+        largest_head=max(float(rows[:done, 2:4].max(initial=0.0) - liquid.table.depth[-1]), 0.0),
         reason=reason,
     )

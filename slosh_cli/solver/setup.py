@@ -9,6 +9,7 @@ import numpy as np
 
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario, Track, Wagon
+from slosh_cli.scenario.rail_reach import computed_lengths
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.problem import Array, Cells, Control, Model, Point
 from slosh_cli.tank.coefficients import slosh_modes
@@ -64,7 +65,7 @@ def problem(scenario: Scenario) -> Problem:
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
     liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
-    rail = _rail(scenario.track, tuple(wheel_positions(scenario.wagon)))
+    rail = _rail(_computed_track(scenario), tuple(wheel_positions(scenario.wagon)))
     contact = contact_model(scenario.contact, wagon.wheel_radius)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
@@ -96,6 +97,15 @@ def _wagon(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, carried: b
 def _rail(track: Track, wheels: tuple[float, ...]) -> RailModel:
     """The rail's matrices, shared by the stops of a study: nothing writes to them."""
     return rail_model(track, np.array(wheels))
+
+
+def _computed_track(scenario: Scenario) -> Track:
+    """The track with the lengths of its domain put in where the scenario leaves them to the program."""
+    wagon, track = scenario.wagon, scenario.track
+    speed = scenario.braking.initial_speed
+    length, element_length = computed_lengths(track, wagon.bogie.wheelbase, wagon.pivot_spacing, speed)
+    domain = {"length": length, "element_length": element_length}
+    return track.model_copy(update={"domain": track.domain.model_copy(update=domain)})
 
 
 def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:

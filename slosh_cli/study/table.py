@@ -23,7 +23,7 @@ _TAIL: Final = (
     "max_wheel_unloading", "mean_total_wheel_load_N", "weight_N", "energy_residual", "steps", "rejected_steps",
     "in_model_range",
 )  # fmt: skip
-_END: Final = ("reason", "warnings")
+_END: Final = ("not_within", "reason", "warnings")
 _OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
 
 

@@ -102,8 +102,14 @@ def _rows(forms: Array, left: int | None, right: int | None) -> Array:
 
 
 def rail_model(track: Track, wheels: Array) -> RailModel:
-    """Assemble the rail under `wheels` (m, positions of wheels 1 to 4 relative to the wagon's centre)."""
-    fixed, elements = _spans(wheels, track.domain.length, track.domain.element_length)
+    """Assemble the rail under `wheels` (m, positions of wheels 1 to 4 relative to the wagon's centre).
+
+    Raises ValueError where the wheels do not fit, or a length of the domain is still to be computed.
+    """
+    length, element_length = track.domain.length, track.domain.element_length
+    if length is None or element_length is None:
+        raise ValueError("length and element_length of the domain must be given here")
+    fixed, elements = _spans(wheels, length, element_length)
     of_spans = _element_forms(np.diff(fixed) / elements)
     ends, spans = np.cumsum([0, *elements]), len(elements)
     bounds, forms = [], []

@@ -21,7 +21,7 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.sweep_progress import StopsProgress, duration
 from slosh_cli.report.study_figures import draw_study
 from slosh_cli.results.result import Result, Status
-from slosh_cli.results.validity import Check
+from slosh_cli.results.validity import Check, warnings_of
 from slosh_cli.scenario import Scenario, load_scenario
 from slosh_cli.scenario import replace as with_values
 
@@ -221,6 +221,27 @@ def test_what_lies_outside_the_liquids_theory_is_marked(slosh: Slosh, quick: Qui
     out = slosh("sweep", "--v0", "80").out
     assert "*o " in out
     assert "o outside the range of the liquid's theory" in out
+
+
+def test_what_a_study_warns_of_is_counted_and_named_in_the_table(
+    slosh: Slosh, quick: QuickSolver, tmp_path: Path
+) -> None:
+    locked = Check("locked wheels", "operation", 3.0, 0.0, "Locked wheels slide; wheel 4 for 3.00 s.")
+    heavy = Check("axle load in t", "operation", 25.0, 22.5, "Overload: 25 t.")
+    fine = Check("wheel unloading", "operation", 0.1, 0.6, "")
+
+    def answer(scenario: Scenario) -> Result:
+        found = (heavy, locked, fine) if scenario.braking.torque > 21e3 else (heavy, fine)
+        return replace(quick.stop(scenario), checks=found, warnings=tuple(warnings_of(found)))
+
+    quick.answer = answer
+    outcome = slosh("sweep", "--v0", "80", "-o", "here", "--json")
+    assert outcome.err.index("24 of 24: axle load in t") < outcome.err.index("8 of 24: locked wheels")
+    assert "wheel unloading" not in outcome.err
+    table = pd.read_csv(tmp_path / "here" / "braking_distance.csv")
+    told = list(zip(table["not_within"], table["warnings"], strict=True))
+    assert told[0] == ("axle load in t", "Overload: 25 t.")
+    assert told[-1] == ("axle load in t; locked wheels", "Overload: 25 t.; Locked wheels slide; wheel 4 for 3.00 s.")
 
 
 @pytest.mark.parametrize(

@@ -291,3 +291,87 @@ def test_a_file_of_an_excitation_that_fails_costs_itself_alone(
         *(found["files"][kind] for kind in ("table", "history") if kind in found["files"]),
     ]
     assert {file.rsplit("/")[-1] for file in told} == files
+
+
+@pytest.mark.parametrize("model", ["modal", "shallow-water", "rigid"])
+def test_both_directions_of_a_deceleration_have_the_same_extremes(slosh: Slosh, model: str) -> None:
+    """The extreme is that of the magnitude, with its sign; a peak is no less a peak for pointing backwards."""
+    given = ("--ramp", "1 s", "--duration", "8 s", "--set", f"tank.liquid.model={model}", *COMPUTED, "--json")
+    forward, backward = (
+        answer(slosh("tank", "excite", HALF, "--deceleration", f"{sign}0.1 g", *given)) for sign in ("", "-")
+    )
+    for key in ("max_normalised_force", "max_moment_N_m"):
+        assert forward[key] > 0.0
+        assert backward[key] == pytest.approx(-forward[key], rel=1e-3)
+    assert backward["max_normalised_force"] <= -1.0 + 1e-9
+    assert abs(backward["max_surface_m"]) == pytest.approx(abs(forward["max_surface_m"]), rel=1e-3)
+
+
+def test_a_fall_of_the_surface_is_an_extreme_too(slosh: Slosh, tmp_path: Path) -> None:
+    """Under the roof there is 0.2 m to rise, and 1.8 m to fall."""
+    found = answer(box(slosh, tmp_path, "30 m/s"))
+    table = rows_of(tmp_path / "here" / "excite.csv")
+    changes = [float(row[f"surface_{end}_m"]) for row in table for end in ("front", "rear")]
+    assert found["max_surface_m"] == min(changes) < -0.3
+    assert max(changes) == pytest.approx(0.2, abs=1e-6)
+
+
+BOX = """format: 1
+name: box
+tank:
+  shape: rectangular
+  width: 2 m
+  height: 2 m
+  length: 10 m
+  fill: 0.9
+  liquid: {model: shallow-water, density: 1000 kg/m^3}
+"""
+
+
+def box(slosh: Slosh, folder: Path, slot_speed: str) -> Outcome:
+    (folder / "box.yaml").write_text(BOX, encoding="utf-8")
+    return slosh(
+        "tank", "excite", "box.yaml", "--set", f"tank.liquid.slot_speed={slot_speed}", "--deceleration", "0.1 g",
+        "--ramp", "2 s", "--duration", "10 s", "-o", "here", "--json",
+    )  # fmt: skip
+
+
+def test_a_peak_of_the_slot_is_told_in_json_history_and_figure(slosh: Slosh, tmp_path: Path) -> None:
+    """The peak is 2.1 at 30 m/s and 4.2 at 100 m/s: the slot's, not the liquid's."""
+    slow, fast = (answer(box(slosh, tmp_path, speed)) for speed in ("30 m/s", "100 m/s"))
+    assert fast["max_normalised_force"] > 1.25 * slow["max_normalised_force"]
+    for found in (slow, fast):
+        assert any("roof" in text and "slot_speed" in text for text in found["warnings"])
+        (head,) = (check for check in found["checks"] if check["check"] == "head of pressure under the roof")
+        assert head["value"] > 0.1
+        assert not head["within"]
+        assert found["recommendation"]["liquid_model"] == "shallow-water"
+    with h5py.File(tmp_path / "here" / "excite.h5") as file:
+        kept = json.loads(file.attrs["checks"])
+        assert "slot_speed" in file.attrs["warnings"]
+        assert "use tank.liquid.model" in file.attrs["recommendation"]
+    assert [check["check"] for check in kept] == [check["check"] for check in fast["checks"]]
+    assert "The liquid struck the roof" in (tmp_path / "here" / "excite.svg").read_text(encoding="utf-8")
+
+
+def test_excite_tells_of_a_first_frequency_that_is_too_high(slosh: Slosh) -> None:
+    given = ("--deceleration", "0.01 g", "--duration", "1 s", "--set", "tank.liquid.model=shallow-water", "--json")
+    found = answer(slosh("tank", "excite", HALF, *given, "--set", "tank.length=4 m", *COMPUTED))
+    assert any("overstates the first slosh frequency" in text for text in found["warnings"])
+    assert found["recommendation"]["liquid_model"] == "modal"
+
+
+def test_coefficients_have_checks_and_a_recommendation(slosh: Slosh) -> None:
+    """Of a tank alone: up to which deceleration the modes may be used; of a stop: for its own deceleration."""
+    found = answer(slosh("tank", "coefficients", HALF, "--json"))
+    (bound,) = found["checks"]
+    assert bound["value"] == pytest.approx(0.8211 / 0.8106, abs=1e-4)
+    assert not bound["within"]
+    assert found["recommendation"]["liquid_model"] is None
+    assert found["recommendation"]["modal_up_to_m_s2"] > 0.0
+    deep = answer(slosh("tank", "coefficients", HALF, "--json", "--set", "tank.liquid.model=shallow-water", "--set",
+                        "tank.length=4 m", *COMPUTED))  # fmt: skip
+    assert any("first slosh frequency" in text for text in deep["warnings"])
+    stop = answer(slosh("tank", "coefficients", PAPER, "--json", *COMPUTED))
+    assert stop["recommendation"]["liquid_model"] == "shallow-water"
+    assert any("expected to move by 1.79 m" in text for text in stop["warnings"])

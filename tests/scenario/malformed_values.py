@@ -389,10 +389,12 @@ SHAPES_AND_TYPES = (
         ),
     ),
     one(
-        "missing mapping", "  domain: {length: 50 m, element_length: 0.5 m}\n", "",
+        "missing mapping",
+        "  rail: {youngs_modulus: 200 GPa, second_moment: 3.06e-5 m^4, mass_per_length: 60 kg/m}\n",
+        "",
         (
-            32, "track.domain", "is required", "nothing",
-            "write `domain:` with the keys length and element_length",
+            32, "track.rail", "is required", "nothing",
+            "write `rail:` with the keys youngs_modulus, second_moment and mass_per_length",
         ),
     ),
     one(

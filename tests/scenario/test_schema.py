@@ -124,6 +124,11 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
     torque = schema["$defs"]["Braking"]["properties"]["torque"]
     assert (torque["type"], torque["x-unit"], torque["examples"]) == ("string", "N m", ["5 kN m"])
     assert schema["$defs"]["Braking"]["properties"]["stop_speed"]["default"] == "0.02 m/s"
+    domain = schema["$defs"]["Domain"]
+    assert "required" not in domain
+    assert all(
+        "default" not in entry and "Default: " in entry["description"] for entry in domain["properties"].values()
+    )
     assert schema["required"] == ["format", "name", "tank"]
     assert schema["then"]["required"] == ["wagon", "track", "contact", "braking"]
     assert schema["then"]["properties"]["tank"]["required"] == ["bottom_height"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from slosh_cli.scenario import Track
@@ -43,7 +45,8 @@ def steady_deflections(track: Track, speed: float) -> tuple[Array, Array]:
     from slosh_cli.track import mem
 
     rail = mem.rail_model(track, WHEELS)
-    nodes = mem.fitted_nodes(WHEELS, track.domain.length, track.domain.element_length)[1:-1]
+    length, element_length = cast(tuple[float, float], (track.domain.length, track.domain.element_length))
+    nodes = mem.fitted_nodes(WHEELS, length, element_length)[1:-1]
     return nodes, -mem.steady_shapes(rail, speed)[1 : rail.nodes - 1, LOADED]
 
 

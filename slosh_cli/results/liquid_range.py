@@ -1,0 +1,109 @@
+"""Verdicts on a liquid: what its tank allows its model, and what its motion does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from slosh_cli.results.validity import Check
+from slosh_cli.scenario import Tank
+from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.tank.comparison import ROUNDING, given_fractions, impossible_fractions
+from slosh_cli.tank.section import section_of
+from slosh_cli.tank.still import frequency_excess
+
+FREQUENCY_LIMIT = 0.05
+"""Shallow water is used where its first frequency is this close to potential flow's."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How far a liquid moved: largest change of its level at an end wall, up or down, and largest head of pressure
+    under the roof, both m and not negative."""
+
+    surface: float
+    head: float = 0.0
+
+
+def room_and_depth(tank: Tank) -> tuple[float, float]:
+    """Room above the still surface and depth of the liquid below it, m."""
+    height = section_of(tank).height
+    return height * (1.0 - tank.fill), height * tank.fill
+
+
+def tank_checks(tank: Tank, advice: str) -> tuple[Check, ...]:
+    """What can be said of the liquid's model before anything moves; `advice` is the sentence that recommends one."""
+    if tank.liquid.model == "modal":
+        return coefficient_checks(tank)
+    if tank.liquid.model == "shallow-water":
+        return (_frequency_check(tank, advice),)
+    return ()
+
+
+def coefficient_checks(tank: Tank) -> tuple[Check, ...]:
+    """Given coefficients against the bound of a tank with flat ends; nothing where they are computed."""
+    shares = [fraction / bound for fraction, bound in given_fractions(tank)]
+    if not shares:
+        return ()
+    meaning = "; ".join(impossible_fractions(tank))
+    name = "slosh mass of the given coefficients over its bound"
+    return (Check(name, "input", max(shares), 1.0 + ROUNDING, meaning),)
+
+
+def motion_checks(tank: Tank, motion: Motion, advice: str) -> tuple[Check, ...]:
+    """What the liquid's motion says of its model; `advice` is the sentence that recommends one."""
+    return tuple(_motion_checks(tank, motion, advice))
+
+
+def expected_checks(tank: Tank, deceleration: float, advice: str) -> tuple[Check, ...]:
+    """The same before a stop of this `deceleration` (m/s^2): a level at rest in it, a L/2g, is passed by as much."""
+    (room, depth), moved = room_and_depth(tank), deceleration * tank.length / STANDARD_GRAVITY
+    if tank.liquid.model == "modal":
+        meaning = (
+            f"The surface is expected to move by {moved:.2f} m at the end walls, but there is {room:.2f} m of room "
+            f"above it and {depth:.2f} m of liquid below: outside the linear theory of the modal liquid. {advice}"
+        )
+        name = "expected surface rise over the room above and below"
+        return (Check(name, "model", moved / min(room, depth), 1.0, meaning),)
+    if tank.liquid.model == "shallow-water":
+        meaning = (
+            f"The liquid is expected to strike the roof (rise {moved:.2f} m, room {room:.2f} m): peaks of force, "
+            "moment and wheel load will depend on tank.liquid.slot_speed; means and the braking distance hardly will."
+        )
+        return (Check("expected surface rise over the room above", "accuracy", moved / room, 1.0, meaning),)
+    return ()
+
+
+def _frequency_check(tank: Tank, advice: str) -> Check:
+    excess = frequency_excess(tank, STANDARD_GRAVITY)
+    return Check(
+        "excess of the first slosh frequency",
+        "model",
+        excess,
+        FREQUENCY_LIMIT,
+        f"Shallow water overstates the first slosh frequency of this tank by {excess:.1%}: the liquid is too deep for "
+        f"the tank's length. {advice}",
+    )
+
+
+def _motion_checks(tank: Tank, motion: Motion, advice: str) -> Iterator[Check]:
+    room, depth = room_and_depth(tank)
+    if tank.liquid.model == "modal":
+        yield Check(
+            "surface rise over the room above and below",
+            "model",
+            motion.surface / min(room, depth),
+            1.0,
+            f"The surface moves by {motion.surface:.2f} m at the end walls, but there is {room:.2f} m of room above it "
+            f"and {depth:.2f} m of liquid below: outside the linear theory of the modal liquid, which then overstates "
+            f"the shift of weight. {advice}",
+        )
+    if tank.liquid.model == "shallow-water":
+        yield Check(
+            "head of pressure under the roof",
+            "accuracy",
+            motion.head,
+            0.0,
+            f"The liquid struck the roof (head up to {motion.head:.1f} m): peaks of force, moment and wheel load "
+            "depend on tank.liquid.slot_speed there; means and the braking distance hardly do.",
+        )

@@ -1,0 +1,107 @@
+"""Is a stopped wagon at rest for good? What the liquid can still push, beside what holds the wagon.
+
+A run ends at the first passage of the stop speed. The liquid then still moves. Here the tank is held still, with the
+pitch that it has, and the liquid goes on by itself; brakes, rails and running resistance hold the wagon as long as the
+largest force of that liquid stays below what they can bear.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slosh_cli.results.validity import Check
+from slosh_cli.scenario import Scenario
+from slosh_cli.solver import excite_kernels
+from slosh_cli.solver.setup import HALF, Problem
+from slosh_cli.solver.state import State
+from slosh_cli.tank.shallow import WORK_ROWS
+from slosh_cli.wagon.coordinates import CAR_PITCH
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Array = NDArray[np.float64]
+
+PERIODS = 4.0
+"""Periods of the first mode that the modes are looked at for."""
+SAMPLES = 400
+"""Instants per period of the fastest mode, at which its force is looked at."""
+CELL_PERIODS = 0.5
+"""Periods of the first mode that cells are carried on for: in half of one every wave reaches the wall ahead of it,
+and bores lose their height from one passage to the next."""
+CELL_SAMPLES = 60
+"""Instants per period between which the mean force of the cells is looked at."""
+REST_SPEED = 0.1
+"""A stop speed (m/s) up to which a stopped wagon is as good as at rest."""
+
+
+def rest_checks(scenario: Scenario, stop: Problem, end: State) -> tuple[Check, ...]:
+    """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
+    moving = stop.model.liquid.mu.size or stop.model.shallow.cells
+    if not moving or scenario.braking.stop_speed > REST_SPEED:
+        return ()
+    (on, back), held = largest_pushes(stop, end), holding_force(scenario, stop.static_loads)
+    push, way = max(on, back), "on" if on > held else "back"
+    return (
+        Check(
+            "push of the liquid after the stop over what holds the wagon",
+            "operation",
+            push,
+            held,
+            f"The wagon stops, but it is not at rest: held still, its liquid would push it {way} with up to "
+            f"{push / 1e3:.3g} kN, and brakes and resistance hold {held / 1e3:.3g} kN. It will move on again; the "
+            "braking distance is that of the first stop.",
+        ),
+    )
+
+
+def holding_force(scenario: Scenario, static_loads: Sequence[float] | Array) -> float:
+    """Largest force (N) along the track that a standing wagon bears: eight braked wheels and running resistance.
+
+    `static_loads` (4,) N are those of the wheels on one rail.
+    """
+    brake, wagon = scenario.braking.torque / scenario.wagon.wheelset.wheel_radius, scenario.wagon
+    wheels = np.minimum(brake, scenario.contact.adhesion.mu0 * np.asarray(static_loads, dtype=np.float64))
+    return float(wheels.sum() / HALF + wagon.running_resistance.constant)
+
+
+def largest_pushes(stop: Problem, end: State) -> tuple[float, float]:
+    """Largest forces (N, of the whole tank) of the liquid on the tank held still from `end` on: forward, backward."""
+    forces = _push_of_cells(stop, end) if stop.model.shallow.cells else _push_of_modes(stop, end)
+    return max(float(forces.max(initial=0.0)) / HALF, 0.0), max(-float(forces.min(initial=0.0)) / HALF, 0.0)
+
+
+def _push_of_modes(stop: Problem, end: State) -> Array:
+    """Force (N) of half a tank's modes over time: each swings freely about where the pitch lets it rest."""
+    liquid, pitch = stop.model.liquid, float(end.start.q[CAR_PITCH])
+    frequency = np.sqrt(liquid.stiffness / liquid.mu)
+    decay = 0.5 * liquid.damping / liquid.mu
+    swing = np.sqrt(frequency**2 - decay**2)
+    place = end.start.slosh - liquid.pitch_weight * pitch / liquid.stiffness
+    other = (end.start.slosh_rate + decay * place) / swing
+    duration = 2.0 * np.pi * PERIODS / frequency.min()
+    count = min(int(PERIODS * SAMPLES * frequency.max() / frequency.min()), 100_000)
+    time = np.linspace(0.0, duration, count)[:, None]
+    fade, cosine, sine = np.exp(-decay * time), np.cos(swing * time), np.sin(swing * time)
+    amplitude = fade * (place * cosine + other * sine)
+    rate = fade * ((swing * other - decay * place) * cosine - (swing * place + decay * other) * sine)
+    acceleration = -(frequency**2) * amplitude - 2.0 * decay * rate
+    return np.asarray(-acceleration @ liquid.lambda_1, dtype=np.float64)
+
+
+def _push_of_cells(stop: Problem, end: State) -> Array:
+    """Mean forces (N) of half a tank's cells over short stretches of time."""
+    liquid, pitch = stop.model.shallow, float(end.start.q[CAR_PITCH])
+    area, flow, depth = (column.copy() for column in end.cells_start)
+    table, still = liquid.table, liquid.still_depth
+    mean_depth = np.interp(still, table.depth, table.area) / np.interp(still, table.depth, table.width)
+    period = 2.0 * liquid.cells * liquid.spacing / np.sqrt(liquid.gravity * mean_depth)
+    count = int(CELL_PERIODS * CELL_SAMPLES)
+    lengths = np.full(count, period / CELL_SAMPLES)
+    leaning = np.full(count, liquid.gravity * pitch)
+    rows, work = np.zeros((count, 5)), np.zeros((WORK_ROWS, liquid.cells + 1))
+    done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, leaning, work, np.zeros(4), rows)
+    return np.asarray(rows[:done, 0] / lengths[:done] - liquid.mass * liquid.gravity * pitch, dtype=np.float64)

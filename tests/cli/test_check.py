@@ -1,0 +1,83 @@
+"""`slosh check` tells what is allowed but unlikely, or bound to happen, and still ends with 0."""
+
+import json
+from pathlib import Path
+
+import pytest
+from stand_ins import PAPER, Slosh
+
+from slosh_cli.cli.exit_codes import ExitCode
+
+COMPUTED = ("--set", "tank.coefficients=computed")
+TANK = PAPER.parent / "kolaei_half.yaml"
+
+
+def told(slosh: Slosh, file: Path, *overrides: str) -> dict:
+    options = [part for override in overrides for part in ("--set", override)]
+    outcome = slosh("check", file, "--json", *COMPUTED, *options)
+    assert outcome.code == ExitCode.DONE, outcome.err
+    return json.loads(outcome.out)
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [
+        ("tank.liquid.density=1840 kg/m^3", "each axle carries 32.8 t"),
+        ("wagon.bogie.mass=4.7 t", "counted twice"),
+        ("tank.length=25 m", "overhangs"),
+        ("wagon.car_body.mass=2 t", "bare shell"),
+        ("braking.torque=20 kN m", "locked wheels, with a rigid load wheel 2, wheel 4"),
+        ("braking.torque=10 kN m", "outside the linear theory"),
+    ],
+)
+def test_findings_are_warnings(slosh: Slosh, override: str, said: str) -> None:
+    found = told(slosh, PAPER, override)
+    assert found["valid"] is True
+    assert any(said in text for text in found["warnings"]), found["warnings"]
+    assert len(found["warnings"]) == sum(not check["within"] for check in found["checks"])
+    plain = slosh("check", PAPER, *COMPUTED, "--set", override)
+    assert plain.code == ExitCode.DONE
+    assert said in plain.err
+
+
+def test_a_gentle_stop_of_the_paper_s_wagon_is_told_nothing(slosh: Slosh) -> None:
+    found = told(slosh, PAPER, "braking.torque=2 kN m")
+    assert found["warnings"] == []
+    assert all(check["within"] for check in found["checks"])
+    assert found["recommendation"]["sentence"] in slosh("check", PAPER, *COMPUTED, "--set", "braking.torque=2 kN m").out
+
+
+@pytest.mark.parametrize(
+    ("override", "said"),
+    [("tank.fill=0.95", "expected to strike the roof"), ("tank.length=6 m", "overstates the first slosh frequency")],
+)
+def test_the_range_of_shallow_water_is_told_before_the_run(slosh: Slosh, override: str, said: str) -> None:
+    found = told(slosh, PAPER, "tank.liquid.model=shallow-water", override)
+    assert any(said in text for text in found["warnings"]), found["warnings"]
+
+
+def test_a_speed_above_the_critical_one(slosh: Slosh) -> None:
+    """sqrt((666875 N + 2 sqrt(1e7 N/m^2 x 6.12e6 N m^2))/2000 kg/m) = 90.3 m/s."""
+    found = told(slosh, PAPER, "track.rail.mass_per_length=2000 kg/m", "braking.initial_speed=100 m/s")
+    assert any("not below the track's critical speed of 90.3 m/s" in text for text in found["warnings"])
+
+
+def test_given_coefficients_beyond_their_bound(slosh: Slosh) -> None:
+    outcome = slosh("check", PAPER, "--json")
+    assert any("0.9345" in text and "0.8106" in text for text in json.loads(outcome.out)["warnings"])
+    assert outcome.err == ""
+
+
+def test_a_tank_alone_is_told_up_to_which_deceleration_modes_may_be_used(slosh: Slosh) -> None:
+    found = told(slosh, TANK)
+    assert found["describes"] == "a tank alone"
+    assert found["warnings"] == []
+    assert found["recommendation"]["liquid_model"] is None
+    assert found["recommendation"]["modal_up_to_m_s2"] == pytest.approx(1.48, abs=0.01)
+
+
+def test_both_models_of_a_stop_recommend_the_same(slosh: Slosh) -> None:
+    advice = [
+        told(slosh, PAPER, f"tank.liquid.model={model}")["recommendation"] for model in ("modal", "shallow-water")
+    ]
+    assert advice[0] == advice[1]
