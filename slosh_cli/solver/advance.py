@@ -6,6 +6,7 @@ import math
 
 from slosh_cli.compiled import inner_kernel, kernel, part_kernel
 from slosh_cli.solver.cells import FORCE, LOSS, MOMENT, cells_rise, settle_cells
+from slosh_cli.solver.contacts import brake_holds
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
     EVENT_COUNT,
@@ -51,10 +52,12 @@ RUNNING, STOPPED, TIME_LIMIT, PITCH_LIMIT, UNSOLVED, STALLED_EVENTS, ROWS_FULL, 
 SHORTEST_STEP = 1e-9
 """Steps do not go below this, s."""
 MOST_STALLED = 200
-"""Events in a row without time passing that end a run."""
+"""Events in a row, each within two of the shortest steps of the last, that end a run."""
 GROWTH = 4.0
 INTEGRAL, PROPORTIONAL = 0.7 / 3.0, 0.3 / 3.0
 """Exponents of the step control for a local error of order 3: K. Gustafsson, ACM TOMS 17 (1991) 533-554."""
+TORQUE_RATE_OVER = 1e-6
+"""The rate of the brakes' torque is its change over this time, s."""
 RESTART_STEP = 1e-3
 """First step after a discontinuity, s; error control takes it from there."""
 
@@ -165,7 +168,17 @@ def _record(model, state, rows, step):
 
 
 @inner_kernel
-def _apply_events(state, before, after):
+def _holds(model, state, wheel):
+    """Whether the brake holds a wheel at rest from now on; forces depend on places and speeds, so wheels do not wait
+    for each other."""
+    time, phase = state.clock[TIME], state.counts[PHASE]
+    torque = brake_torque(model.brake, time, phase)
+    rate = (brake_torque(model.brake, time + TORQUE_RATE_OVER, phase) - torque) / TORQUE_RATE_OVER
+    return brake_holds(model, state.start, wheel, torque, rate, EVENT_TOLERANCE)
+
+
+@inner_kernel
+def _apply_events(model, state, before, after):
     """Switch what the reached events switch; returns (something switched, outcome)."""
     switched, outcome = False, RUNNING
     for k in range(EVENT_COUNT):
@@ -174,8 +187,8 @@ def _apply_events(state, before, after):
         switched = True
         if k < FLOOR_EVENT:
             wheel = k - BRAKE_EVENT
-            state.locked[wheel] = not state.locked[wheel]
             state.start.v[WHEEL_SPIN + wheel] = 0.0
+            state.locked[wheel] = _holds(model, state, wheel)
         elif k == STOP_EVENT:
             outcome = STOPPED
         elif k == PITCH_EVENT:
@@ -184,15 +197,17 @@ def _apply_events(state, before, after):
 
 
 @inner_kernel
-def _switch_at_start(state, before, after, step):
-    """Switch wheels whose event lies no further than the shortest step from the start of the one in hand."""
+def _switch_at_start(model, state, before, after, step):
+    """Switch wheels whose event is now: it lies no further than the shortest step from the start of the one in hand."""
     switched = False
     for wheel in range(WHEELS):
         k = BRAKE_EVENT + wheel
         if after[k] < -EVENT_TOLERANCE and step * before[k] <= 2.0 * SHORTEST_STEP * (before[k] - after[k]):
-            switched = True
-            state.locked[wheel] = not state.locked[wheel]
-            state.start.v[WHEEL_SPIN + wheel] = 0.0
+            holds = _holds(model, state, wheel)
+            if holds != state.locked[wheel]:
+                switched = True
+                state.locked[wheel] = holds
+                state.start.v[WHEEL_SPIN + wheel] = 0.0
     return switched
 
 
@@ -222,16 +237,19 @@ def _accept(model, state, rows, step):
     state.clock[TIME] += step
     state.clock[MIDDLE_AT] = (GAMMA - 1.0) * step
     state.counts[STEPS] += 1
-    state.counts[STALLED] = 0
+    if step > 2.0 * SHORTEST_STEP:
+        state.counts[STALLED] = 0
 
 
 @inner_kernel
-def _onset(state):
-    """Pass a break of the brake's torque; the first one is the onset."""
+def _onset(model, state):
+    """Pass a break of the brake's torque; the first one is the onset. It may hold a locked wheel no longer."""
     if state.counts[PHASE] == 0:
         state.clock[ONSET_TIME] = state.clock[TIME]
         state.clock[ONSET_POSITION] = state.start.q[0]
     state.counts[PHASE] += 1
+    for wheel in range(WHEELS):
+        state.locked[wheel] = state.locked[wheel] and _holds(model, state, wheel)
 
 
 @inner_kernel
@@ -239,6 +257,9 @@ def _limited_step(model, state):
     """The step to try, not past a break or the time limit; and whether it ends at the break."""
     time = state.clock[TIME]
     step = min(state.clock[NEXT_STEP], model.control.longest_step)
+    slowing = abs(state.start.a[0])
+    if slowing * step > model.control.most_slowing:
+        step = model.control.most_slowing / slowing
     until = min(next_break(model.brake, state.counts[PHASE]), model.control.time_limit) - time
     if step >= until * (1.0 - 1e-9):
         return until
@@ -258,11 +279,12 @@ def _next_step(step, error, error_before, rejected):
 def _event_step(model, state, step, time):
     """Shorter step where an event falls inside the one in hand (its middle stage is looked at too)."""
     phase = state.counts[PHASE]
-    torque = brake_torque(model.brake, time + step, phase)
+    torque = brake_torque(model.brake, time + GAMMA * step, phase)
     event_values(model, state.middle, state.locked, torque, state.values)
     shorter = min(step, shorter_step(state.values_before, state.values, GAMMA * step))
     if shorter >= GAMMA * step:
         shorter = step
+    torque = brake_torque(model.brake, time + step, phase)
     event_values(model, state.end, state.locked, torque, state.values)
     return min(shorter, shorter_step(state.values_before, state.values, step))
 
@@ -299,17 +321,17 @@ def advance(model, scratch, state, rows, most_steps):
         if time >= model.control.time_limit:
             return TIME_LIMIT
         if time >= next_break(model.brake, state.counts[PHASE]):
-            _onset(state)
+            _onset(model, state)
             outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:
                 return outcome
         step = _limited_step(model, state)
         if not _has_room(model, state, rows, step):
             return ROWS_FULL
-        accepted = False
+        accepted = switched = False
         tries = 0
         rejected = False
-        while not accepted:
+        while not (accepted or switched):
             error = take_step(model, scratch, state, time, step)
             if not (0.0 <= error <= 1.0):
                 state.counts[REJECTED] += 1
@@ -320,18 +342,15 @@ def advance(model, scratch, state, rows, most_steps):
                     return UNSOLVED
                 continue
             shorter = _event_step(model, state, step, time)
-            if shorter < step:
+            accepted = shorter >= step or step <= 2.0 * SHORTEST_STEP
+            if not accepted:
                 tries += 1
                 state.counts[REJECTED] += 1
-                if shorter < 2.0 * SHORTEST_STEP or tries > 60:
-                    break
+                if shorter < 2.0 * SHORTEST_STEP:
+                    switched = _switch_at_start(model, state, state.values_before, state.values, step)
                 # a straight line may creep towards a bent event from beyond it: halving does not
-                step = shorter if tries < 3 else min(shorter, 0.5 * step)
-                continue
-            accepted = True
-        if not accepted:
-            if not _switch_at_start(state, state.values_before, state.values, step):
-                return STALLED_EVENTS
+                step = max(shorter if tries < 3 else min(shorter, 0.5 * step), 2.0 * SHORTEST_STEP)
+        if switched:
             outcome = _after_events(model, scratch, state)
             if outcome != RUNNING:
                 return outcome
@@ -343,7 +362,7 @@ def advance(model, scratch, state, rows, most_steps):
         state.clock[LAST_ERROR] = error
         if time + step >= next_break(model.brake, state.counts[PHASE]) * (1.0 - 1e-14):
             state.clock[TIME] = next_break(model.brake, state.counts[PHASE])
-        switched, outcome = _apply_events(state, state.values_before, state.values)
+        switched, outcome = _apply_events(model, state, state.values_before, state.values)
         for k in range(EVENT_COUNT):
             state.values_before[k] = state.values[k]
         if outcome != RUNNING:

@@ -116,6 +116,26 @@ def wheel_forces(model, scratch, point, locked, torque):
 
 
 @inner_kernel
+def brake_holds(model, point, wheel, torque, torque_rate, tolerance):
+    """Whether a brake that can bear `torque` (N m), changing by `torque_rate` (N m/s), holds a wheel that is at rest.
+
+    It does below its torque, and at it (within `tolerance`, a part of it) while `f R` grows no faster: model section 8.
+    """
+    if torque <= 0.0:
+        return False
+    contact, under, speed = model.contact, model.rail.contact[wheel], point.v[0]
+    heave = WHEEL_HEAVE + wheel
+    normal, slope = normal_force(contact, point.rail[under] - point.q[heave])
+    force, by_normal, by_slip, by_speed = creep_force(contact, normal, speed, speed)
+    radius = model.wagon.wheel_radius
+    over = force * radius - torque
+    if abs(over) > tolerance * torque:
+        return over < 0.0
+    rate = by_normal * slope * (point.rail_rate[under] - point.v[heave]) + (by_slip + by_speed) * point.a[0]
+    return rate * radius <= torque_rate
+
+
+@inner_kernel
 def _inputs(model, scratch, point):
     """The forces in the order of the wagon's inputs, into `scratch.inputs` (7,)."""
     inputs = scratch.inputs

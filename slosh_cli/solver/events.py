@@ -29,7 +29,7 @@ def event_values(model, point, locked, torque, values):
     speed = point.v[0]
     for i in range(WHEELS):
         if locked[i]:
-            values[BRAKE_EVENT + i] = 1.0 - point.creep[i] * radius / torque
+            values[BRAKE_EVENT + i] = 1.0 - point.creep[i] * radius / torque if torque > 0.0 else -1.0
         elif torque > 0.0:
             values[BRAKE_EVENT + i] = radius * point.v[WHEEL_SPIN + i]
     values[FLOOR_EVENT] = speed - CREEPAGE_SPEED_FLOOR
@@ -58,5 +58,10 @@ def shorter_step(before, after, step):
 
 @inner_kernel
 def reached(before, after, k):
-    """True when event `k` has come about at the end of a step with values `before` and `after`."""
+    """True when event `k` has come about at the end of a step with values `before` and `after`.
+
+    A wheel's value that was not armed comes about when it is clearly beyond zero.
+    """
+    if k < FLOOR_EVENT and after[k] < -EVENT_TOLERANCE:
+        return True
     return before[k] > EVENT_TOLERANCE and after[k] <= EVENT_TOLERANCE

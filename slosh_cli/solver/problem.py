@@ -26,7 +26,8 @@ class Control(NamedTuple):
     """What steers the integrator. SI units.
 
     `local_tolerance` bounds the error of one step relative to `speed_scale` (15,), `place_scale` (15,) and
-    `slosh_scale`; `load_scale` is the static wheel load in N, `approach_scale` its Hertz approach in m.
+    `slosh_scale`; `load_scale` is the static wheel load in N, `approach_scale` its Hertz approach in m. No step is
+    longer than `longest_step` (s), nor takes more than `most_slowing` (m/s) from the speed.
     """
 
     local_tolerance: float
@@ -38,6 +39,7 @@ class Control(NamedTuple):
     stop_speed: float
     time_limit: float
     longest_step: float
+    most_slowing: float
     interval: float
 
 

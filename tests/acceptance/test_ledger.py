@@ -64,6 +64,22 @@ def test_ledger_closes_at_default_tolerance(stop, case):
     check_weight(result)
 
 
+LIGHT = (
+    "paper_80_solid", "contact.adhesion=wet", "tank.fill=0.02", "track.foundation.stiffness=7e7 N/m^2",
+    "wagon.primary_suspension.stiffness=5e6 N/m", "wagon.primary_suspension.damping=4e4 N s/m",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("speed", [20, 27, 35, 50])
+def test_short_stop_of_a_light_wagon_on_a_stiff_track_closes_too(stop, speed):
+    """Nothing shakes there, so that only what a step may take from the speed keeps the steps short."""
+    case = (*LIGHT, f"braking.initial_speed={speed} km/h", "braking.torque=7 kN m")
+    result, fine = stop(*case), stop(*case, "solver.tolerance=1e-6")
+    assert min(result.min_wheel_load_N) > 0.0
+    assert result.energy_residual < 1e-4
+    assert result.braking_distance_m == pytest.approx(fine.braking_distance_m, rel=6e-5)
+
+
 def tight(stop, case):
     result = stop(*case, *FINE)
     assert result.status == "stopped"

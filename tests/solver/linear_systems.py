@@ -86,6 +86,7 @@ def linear_stop(stop, step, end):
         stop_speed=-1e9,
         time_limit=end,
         longest_step=step,
+        most_slowing=np.inf,
         interval=1e9,
     )
     contact = model.contact._replace(stiffness=0.0)

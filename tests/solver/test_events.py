@@ -3,14 +3,20 @@
 The runs start a hair before the event, so that the outcome does not hang on where the step control happened to land.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from slosh_cli.solver import advance as loop
-from slosh_cli.solver.events import EVENT_COUNT
+from slosh_cli.solver.contacts import brake_holds
+from slosh_cli.solver.events import EVENT_COUNT, EVENT_TOLERANCE, event_values, shorter_step
+from slosh_cli.solver.method import GAMMA
 from slosh_cli.solver.record import SLOSH_COLUMN
 from slosh_cli.solver.setup import problem
-from slosh_cli.solver.state import EVENTS, REJECTED, TIME, new_scratch, new_state
+from slosh_cli.solver.state import EVENTS, PHASE, REJECTED, TIME, new_scratch, new_state
+from slosh_cli.track.contact import creep_force, normal_force
+from slosh_cli.wagon.brake import Brake
 from slosh_cli.wagon.coordinates import WHEEL_HEAVE, WHEEL_SPIN
 
 NEARNESS = [0.0, 1e-8, 3e-7, 9e-7, 1.1e-6, 1.5e-6, 3e-6, 1e-5, 1e-4, 1e-2]
@@ -27,11 +33,13 @@ def near_event(shipped):
     return build
 
 
-def march(stop, steps, airborne=(), first_step=1e-3):
-    """State after `steps` steps and the loop's last word."""
+def march(stop, steps, airborne=(), locked=(), first_step=1e-3):
+    """State after `steps` steps and the loop's last word. Where a wheel is `locked`, the brakes have set in before."""
     model, start = stop.model, stop.start
     state = new_state(start, stop.cells, EVENT_COUNT, first_step)
     state.airborne[list(airborne)] = True
+    state.locked[list(locked)] = True
+    state.counts[PHASE] = 1 if locked else 0
     scratch = new_scratch(stop.model.rail, start.slosh.size, stop.cells.area.size)
     assert loop.begin(model, scratch, state)
     rows = np.zeros((8, SLOSH_COLUMN + 2 * start.slosh.size))
@@ -50,6 +58,109 @@ def test_wheel_about_to_stop_locks(near_event, speed, inertia):
     assert state.clock[TIME] > 1e-3
     assert state.locked[0]
     assert state.start.v[WHEEL_SPIN] == 0.0
+
+
+@pytest.fixture
+def held_wheel(near_event):
+    """The same with wheel 1 locked, `f R` short of the torque by a part `gap` of it, pressed down at `fall` m/s."""
+
+    def build(gap, fall):
+        stop = near_event(20)
+        model, start = stop.model, stop.start
+        start.v[WHEEL_SPIN] = 0.0
+        start.v[WHEEL_HEAVE] = -fall
+        creep, *_ = creep_force(model.contact, start.normal[0], start.v[0], start.v[0])
+        torque = creep * model.wagon.wheel_radius / (1.0 - gap)
+        return replace(stop, model=model._replace(brake=Brake(torque, 0.0)))
+
+    return build
+
+
+@pytest.mark.parametrize("first_step", [1e-5, 1e-4, 1e-3])
+@pytest.mark.parametrize("fall", [1e-4, 0.01, 0.3, 3.0])
+@pytest.mark.parametrize("gap", [-0.2, -1e-3, -3e-6, *NEARNESS[:-2]])
+def test_wheel_about_to_turn_again_turns(held_wheel, gap, fall, first_step):
+    """Held up to the torque and no further (model section 8), also where it enters beyond it."""
+    stop = held_wheel(gap, fall)
+    for steps in range(1, 16):
+        state, outcome = march(stop, steps, locked=[0], first_step=first_step)
+        assert outcome == loop.RUNNING
+        creep = state.start.creep[0] * stop.model.wagon.wheel_radius / stop.model.brake.torque
+        assert creep < 1.0 + 1e-5 or not state.locked[0]
+    assert state.clock[TIME] > 1e-6
+    assert state.start.v[WHEEL_SPIN] > 0.0
+
+
+@pytest.mark.parametrize("first_step", [1e-4, 3e-4])
+@pytest.mark.parametrize("fall", np.geomspace(0.066, 0.080, 12))
+def test_release_within_the_shortest_step_by_one_stage_but_not_by_the_other(held_wheel, fall, first_step):
+    """2e-6 of the torque short of the release, 2 ns: on a bent line one stage says less than the shortest step and the
+    other says more. Once that ended runs as wheels that lock and release without time passing."""
+    state, outcome = march(held_wheel(2e-6, fall), 30, locked=[0], first_step=first_step)
+    assert outcome == loop.RUNNING
+    assert state.start.v[WHEEL_SPIN] > 0.0
+
+
+def test_brake_at_its_limit_holds_while_the_creep_force_grows_no_faster(held_wheel):
+    """At `f R = T` the rates decide; below and above it they do not."""
+    stop = held_wheel(0.0, 0.0)
+    model, start, torque = stop.model, stop.start, stop.model.brake.torque
+
+    def holds(share, fall, torque_rate):
+        start.v[WHEEL_HEAVE] = -fall
+        return brake_holds.py_func(model, start, 0, share * torque, torque_rate, 1e-6)
+
+    normal, slope = normal_force(model.contact, start.rail[model.rail.contact[0]] - start.q[WHEEL_HEAVE])
+    step = 1e-6 * normal
+    creep, after = (creep_force(model.contact, load, start.v[0], start.v[0])[0] for load in (normal, normal + step))
+    rate = model.wagon.wheel_radius * (after - creep) / step * slope * 0.1  # N m/s at 0.1 m/s
+    assert holds(1.0, 0.1, 1.01 * rate)
+    assert not holds(1.0, 0.1, 0.99 * rate)
+    assert holds(1.0, -0.1, -0.99 * rate)
+    assert not holds(1.0, -0.1, -1.01 * rate)
+    assert holds(1.0 + 2e-6, 0.1, 0.0)
+    assert not holds(1.0 - 2e-6, -0.1, 0.0)
+    assert not holds(0.0, -0.1, 0.0)
+
+
+def test_brake_without_torque_lets_go(held_wheel):
+    """No division by a torque of nothing: the wheel turns from that instant on, on the rail or off it."""
+    stop = held_wheel(0.0, 0.0)
+    values = np.zeros(EVENT_COUNT)
+    for creep in (0.0, 1e3):
+        stop.start.creep[0] = creep
+        event_values.py_func(stop.model, stop.start, np.array([True, False, False, False]), 0.0, values)
+        assert values[0] < -EVENT_TOLERANCE
+
+
+def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel, monkeypatch):
+    """The torque grows: the middle stage's `f R` exceeds that of its instant, not that of the step's end."""
+    stop = held_wheel(0.0, 0.0)
+    model, step, begun = stop.model, 0.1, 3.0
+    slope = model.brake.torque  # N m/s
+    state = new_state(stop.start, stop.cells, EVENT_COUNT, step)
+    state.locked[0] = True
+    state.values_before[:] = 1.0
+    asked = []
+
+    def growing(brake, time, phase):
+        asked.append(time)
+        return slope * time
+
+    monkeypatch.setattr(loop, "brake_torque", growing)
+    monkeypatch.setattr(loop, "event_values", event_values.py_func)
+    monkeypatch.setattr(loop, "shorter_step", shorter_step.py_func)
+    radius = model.wagon.wheel_radius
+    for point in (state.middle, state.end):
+        point.v[0] = stop.start.v[0]
+        point.v[WHEEL_SPIN:] = stop.start.v[WHEEL_SPIN:]
+    state.middle.creep[0] = slope * (begun + 0.7 * step) / radius  # between the torques at 0.586 and at the end
+    state.end.creep[0] = 0.9 * slope * begun / radius
+    shorter = loop._event_step.py_func(model, state, step, begun)
+    assert asked == [begun + GAMMA * step, begun + step]
+    value = 1.0 - (begun + 0.7 * step) / (begun + GAMMA * step)
+    assert value < -EVENT_TOLERANCE
+    assert shorter == pytest.approx(GAMMA * step / (1.0 - value))
 
 
 @pytest.mark.parametrize("gap", NEARNESS)
