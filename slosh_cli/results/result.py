@@ -52,8 +52,7 @@ _REMEDIES = {
     Status.TIME_LIMIT: "Raise solver.time_limit, or brake harder: brake and resistance may be too weak.",
     Status.PITCH_LIMIT: "A body pitched beyond what small angles can describe. Lower the torque, "
     "or compare with `--set tank.liquid.model=rigid`.",
-    Status.FAILED: "Tighten solver.tolerance or refine track.domain.element_length, and look at the last "
-    "moments in the history file.",
+    Status.FAILED: "Look at the last moments in the history file.",
 }
 
 

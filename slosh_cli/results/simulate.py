@@ -19,7 +19,7 @@ from slosh_cli.scenario import Scenario
 from slosh_cli.solver import advance, record, state
 from slosh_cli.solver.cells import DEEPEST
 from slosh_cli.solver.ledger import BRAKE, CREEP, FOUNDATION, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
-from slosh_cli.solver.run import Cancel, Progress, Run, integrate
+from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import HALF, Problem, problem
 from slosh_cli.solver.state import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
 from slosh_cli.tank.load import frozen_load
@@ -56,13 +56,23 @@ _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     ),
     advance.UNSOLVED: (
         Status.FAILED,
-        "no step, however short, satisfied the equations at t = {time:.6g} s ({speed:.2f} m/s)",
+        "no step, however short, satisfied the equations at t = {time:.6g} s ({speed:.2f} m/s); tighten "
+        "solver.tolerance or refine track.domain.element_length",
     ),
     advance.STALLED_EVENTS: (
         Status.FAILED,
         "wheels lock and release without time passing at t = {time:.6g} s ({speed:.2f} m/s)",
     ),
-    advance.NOT_FINITE: (Status.FAILED, "a value became infinite or undefined at t = {time:.6g} s"),
+    advance.NOT_FINITE: (
+        Status.FAILED,
+        "a value became infinite or undefined at t = {time:.6g} s; tighten solver.tolerance",
+    ),
+    RINGING: (
+        Status.FAILED,
+        "wheels left the rail, and the track hardly damps what their landings put into it: the waves run to and fro in "
+        "the rail and go on shaking the wheels, and the braking distance hangs on waves too short for any step. Give "
+        "the track its damping (track.foundation.damping, 4.9 kN s/m^2 in the packaged scenarios)",
+    ),
 }
 
 

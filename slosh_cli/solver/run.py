@@ -11,10 +11,11 @@ import numpy as np
 
 from slosh_cli.solver import advance as loop
 from slosh_cli.solver.events import EVENT_COUNT
+from slosh_cli.solver.ledger import FOUNDATION
 from slosh_cli.solver.problem import Array
 from slosh_cli.solver.record import SLOSH_COLUMN, record_row
 from slosh_cli.solver.setup import Problem
-from slosh_cli.solver.state import NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_scratch, new_state
+from slosh_cli.solver.state import INITIAL_KINETIC, NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_scratch, new_state
 
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
@@ -27,6 +28,10 @@ MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
 FIRST_STEP = 1e-3
 """First step to try, s."""
+RINGING = loop.NOT_FINITE + 1
+"""Outcome of a stop whose wheels landed on a track that did not take what they put into it."""
+SWALLOWED = 0.5
+"""It is one where the method took more than this part of what the foundation took."""
 
 
 class Cancel(Protocol):
@@ -73,6 +78,8 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
             progress(_fraction(problem, state), float(state.start.v[0]))
     seconds = time.perf_counter() - began
     _record_end(problem, state, buffer)
+    if outcome == loop.STOPPED and _is_ringing(problem, state):
+        outcome = RINGING
     rows = buffer[: state.counts[ROWS]]
     return Run(np.concatenate([*filled, rows]) if filled else rows, state, outcome, seconds)
 
@@ -91,6 +98,18 @@ def _record_end(problem: Problem, state: State, buffer: Array) -> None:
         return
     record_row(problem.model, state, buffer[state.counts[ROWS]], now, 1.0, 0.0, state.counts[PHASE])
     state.counts[ROWS] += 1
+
+
+def _is_ringing(problem: Problem, state: State) -> bool:
+    """Whether waves of landing wheels stayed in the rail until steps too long for them took their energy.
+
+    Without damping they run to and fro between the domain's ends, ever shorter, and shake the wheels that made them.
+    No step is short enough for the shortest ones: an L-stable method takes their energy, so that the ledger misses it,
+    and the distance goes on changing with the tolerance and with every hair's breadth of the speed.
+    """
+    missing = -float(state.residual[1])
+    absorbed = float(state.losses[FOUNDATION] / state.clock[INITIAL_KINETIC])
+    return bool(state.lifted[0]) and missing > max(problem.most_missing, SWALLOWED * absorbed)
 
 
 def _fraction(problem: Problem, state: State) -> float:

@@ -119,6 +119,42 @@ def test_wheels_that_stay_down_are_not_said_to_lift(stop, case):
     assert not any("lifted" in warning for warning in result.warnings)
 
 
+UNDAMPED = ("track.foundation.damping=0 N s/m^2", "track.foundation.shear_damping=0 N s")
+HARD_AND_LIGHT = ("paper_80_solid", "tank.fill=0.02", "braking.torque=60 kN m", "braking.initial_speed=30 km/h")
+
+
+def test_wheels_that_land_on_a_track_without_damping_give_no_distance(stop):
+    """What landings put into such a rail stays in it: the distance would follow the tolerance, not the wagon."""
+    result = stop(*HARD_AND_LIGHT, *UNDAMPED)
+    assert max(c.value for c in result.checks if c.name == "wheels lifted off") > 100
+    assert result.status == "failed"
+    assert result.braking_distance_m is None
+    assert "track.foundation.damping" in result.reason
+    assert "tolerance" not in f"{result.reason} {result.status.remedy}"
+
+
+@pytest.mark.parametrize("tolerance", ["1e-2", "1e-3", "1e-4"])
+def test_wheels_that_land_on_a_track_with_damping_give_a_distance(stop, tolerance):
+    """The same wagon on the paper's own track: the ledger closes, and the distance is within the tolerance."""
+    result, fine = (
+        stop(*HARD_AND_LIGHT, f"solver.tolerance={tolerance}"),
+        stop(*HARD_AND_LIGHT, "solver.tolerance=1e-6"),
+    )
+    assert min(fine.min_wheel_load_N) == 0.0
+    assert result.status == fine.status == "stopped"
+    assert fine.energy_residual < 1e-6
+    assert result.braking_distance_m == pytest.approx(fine.braking_distance_m, rel=float(tolerance))
+
+
+def test_few_lifts_on_a_track_without_damping_do_no_harm(stop):
+    """Two lift-offs of a light wagon: what they leave in the rail is far less than the tolerance."""
+    case = ("paper_80_solid", "tank.fill=0.02", "braking.torque=15 kN m", "braking.initial_speed=30 km/h", *UNDAMPED)
+    result, fine = stop(*case), stop(*case, "solver.tolerance=1e-5")
+    assert min(result.min_wheel_load_N) == 0.0
+    assert result.status == "stopped"
+    assert result.braking_distance_m == pytest.approx(fine.braking_distance_m, rel=1e-4)
+
+
 def test_lifted_wheel_carries_and_brakes_nothing(stop):
     result = stop(*LIFTING[0], "output.interval=1 ms")
     normal, creep = of_wheels(result, "normal_force"), of_wheels(result, "tangential_force")
