@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import inner_kernel, kernel, part_kernel
-from slosh_cli.solver.cells import FORCE, LOSS, MOMENT, cells_rise, settle_cells
+from slosh_cli.solver.cells import LOSS, START_FORCE, START_MOMENT, cells_rise, settle_cells
 from slosh_cli.solver.contacts import brake_holds
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
@@ -86,9 +86,9 @@ def _make_consistent(model, scratch, state):
     phase = state.counts[PHASE]
     torque = brake_torque(model.brake, state.clock[TIME], phase)
     _copy_point(start, base)
-    prepare_stage(model, scratch, state.work, 0.0, start.v[0], start.a[0])
-    push = state.push
-    solved = solve_stage(model, scratch, state.work, base, start, state.locked, 0.0, torque, push[FORCE], push[MOMENT])
+    prepare_stage(model, scratch, state.work, 0.0, start.v[0], start.a[0], 0.0)
+    force, moment = state.push[START_FORCE], state.push[START_MOMENT]
+    solved = solve_stage(model, scratch, state.work, base, start, state.locked, 0.0, torque, force, moment)
     balance(model, state.cells_start, start, state.energies)
     copy(state.energies, state.energies_before)
     event_values(model, start, state.locked, torque, state.values_before)

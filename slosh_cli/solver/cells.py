@@ -7,19 +7,36 @@ impulse is handed on, so no impulse is ever lost: to the next step where that is
 (a step however short would otherwise have to bear all of it). Places and speeds are of second order in the step
 (seen: 2.0 in smooth water, pitch too where bores run). The force's course within a step is not resolved: what
 the ledger misses falls with orders 1.5 to 0.7, a bore's arrival at a wall being a jump of the force in any step.
+
+What walls push within a step depends on the tank's acceleration in it, like the force of a mass that goes along: the
+added mass of what waves reach from the walls in that time. A push from the last acceleration alone lets the coupling
+swing up where that is more than a third of the wagon's own mass (P. Causin, J.-F. Gerbeau and F. Nobile, Comput.
+Methods Appl. Mech. Eng. 194 (2005) 4506-4527). So where it is not small beside it, the added mass is measured, by
+carrying the liquid through the step a second time, and goes into the stages' equations: the push then follows the
+stage's own acceleration (a quasi-Newton coupling; J. Degroote, Arch. Comput. Methods Eng. 20 (2013) 185-238).
 """
 
 from __future__ import annotations
 
+import math
+
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.solver.method import GAMMA
-from slosh_cli.tank.section_table import potential_at
+from slosh_cli.solver.state import PUSH_PLACES
+from slosh_cli.tank.section_table import potential_at, section_at
 from slosh_cli.tank.shallow import liquid_energy_in_tank, liquid_evolve
 from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
 
-# places in State.push
+# places in State.push: FORCE, MOMENT are means over the step, START_..., END_... the push at its two ends; FOLLOWING
+# (kg) is the added mass with which it follows the tank's acceleration, HELD_... the push at acceleration 0
 FORCE, MOMENT, LEFT_FORCE, LEFT_MOMENT, OWED_FORCE, OWED_MOMENT, LOSS, DEEPEST, LAST_STEP = range(9)
+FOLLOWING, HELD_FORCE, HELD_MOMENT, START_FORCE, START_MOMENT, END_FORCE, END_MOMENT = range(9, PUSH_PLACES)
+
+LOOSE = 0.2
+"""A push from the last acceleration will do while waves reach less than this part of what the wagon weighs."""
+LEAST_CHANGE = 1e-3
+"""The added mass is measured between two accelerations at least this far apart, m/s^2."""
 
 
 @inner_kernel
@@ -49,29 +66,110 @@ def momentum_in_tank(model, cells):
 
 
 @inner_kernel
+def _at_centre(model, accelerations):
+    """Acceleration (m/s^2) of the tank at the still liquid's centre."""
+    total = model.shallow.centre_height * accelerations[CAR_PITCH]
+    for i in range(COORDINATES):
+        total += model.wagon.tank_row[i] * accelerations[i]
+    return total
+
+
+@inner_kernel
+def _reached_mass(liquid, depth, step):
+    """Mass (kg) that bears on walls and baffles when the tank's acceleration changes for `step` (s).
+
+    The mean force of that time is that of half the length which waves run. The surface's slope within a cell follows an
+    acceleration at once, so that half a cell counts in any step.
+    """
+    total = 0.0
+    for face in range(liquid.cells + 1):
+        if 0 < face < liquid.cells and liquid.loss[face] == 0.0:
+            continue
+        for cell in range(max(face - 1, 0), min(face + 1, liquid.cells)):
+            area, _, width = section_at(liquid.table, depth[cell])
+            total += area * (liquid.spacing + step * math.sqrt(liquid.gravity * area / width))
+    return min(0.5 * liquid.density * total, liquid.mass)
+
+
+@inner_kernel
+def _mean_push(model, scratch, state, acceleration, step):
+    """Carry the liquid through the step with the tank's constant `acceleration`: its impulses in `scratch.cell_sums`.
+
+    Returns False when it could not be carried through.
+    """
+    cells, sums = state.cells_end, scratch.cell_sums
+    copy_cells(state.cells_start, cells)
+    fill(sums, 0.0)
+    return liquid_evolve(
+        model.shallow, cells.area, cells.flow, cells.depth, acceleration, step, scratch.cell_work, sums
+    )
+
+
+@inner_kernel
+def _start_with(model, start, push, force, moment):
+    """Let the start's accelerations follow a push of `force` and `moment`."""
+    for i in range(COORDINATES):
+        start.a[i] += (force - push[START_FORCE]) * model.tank_push[i] + (
+            moment - push[START_MOMENT]
+        ) * model.tank_turn[i]
+    push[START_FORCE], push[START_MOMENT] = force, moment
+
+
+@inner_kernel
 def expect_push(model, scratch, state, step):
     """Estimate the liquid's mean force and moment over the step and let the start's accelerations follow.
 
     Returns False when the liquid could not be carried through.
     """
-    liquid, start, push = model.shallow, state.start, state.push
+    liquid, start, push, sums = model.shallow, state.start, state.push, scratch.cell_sums
     acceleration = liquid.centre_height * start.a[CAR_PITCH] - liquid.gravity * (
         start.q[CAR_PITCH] + 0.5 * step * start.v[CAR_PITCH]
     )
     for i in range(COORDINATES):
         acceleration += model.wagon.tank_row[i] * start.a[i]
-    copy_cells(state.cells_start, state.cells_end)
-    cells, sums = state.cells_end, scratch.cell_sums
-    fill(sums, 0.0)
-    if not liquid_evolve(liquid, cells.area, cells.flow, cells.depth, acceleration, step, scratch.cell_work, sums):
+    if not _mean_push(model, scratch, state, acceleration, step):
         return False
     pitch = start.q[CAR_PITCH] + 0.5 * step * start.v[CAR_PITCH]
     paid_over = max(step, push[LAST_STEP])
     force = sums[0] / step + push[LEFT_FORCE] / paid_over - liquid.mass * liquid.gravity * pitch
     moment = sums[1] / step + push[LEFT_MOMENT] / paid_over
-    for i in range(COORDINATES):
-        start.a[i] += (force - push[FORCE]) * model.tank_push[i] + (moment - push[MOMENT]) * model.tank_turn[i]
-    push[FORCE], push[MOMENT] = force, moment
+    by_force, by_moment = _at_centre(model, model.tank_push), _at_centre(model, model.tank_turn)
+    lightness = by_force + liquid.centre_height * by_moment
+    reached = _reached_mass(liquid, state.cells_start.depth, step)
+    if reached * lightness > LOOSE:
+        change = (force - push[START_FORCE]) * by_force + (moment - push[START_MOMENT]) * by_moment
+        change /= 1.0 + reached * lightness
+        return _follow(model, scratch, state, step, acceleration, change, force, moment)
+    push[FOLLOWING] = 0.0
+    push[HELD_FORCE], push[HELD_MOMENT] = force, moment
+    _start_with(model, start, push, force, moment)
+    return True
+
+
+@inner_kernel
+def _follow(model, scratch, state, step, acceleration, change, force, moment):
+    """Measure the added mass between `acceleration`, where `force` and `moment` push, and one changed by `change`.
+
+    Its force acts at the still liquid's centre. Returns False when the liquid could not be carried through.
+    """
+    liquid, start, push, sums = model.shallow, state.start, state.push, scratch.cell_sums
+    if abs(change) < LEAST_CHANGE:
+        change = math.copysign(LEAST_CHANGE, change)
+    impulse, turning = sums[0], sums[1]
+    if not _mean_push(model, scratch, state, acceleration + change, step):
+        return False
+    answer = (sums[0] - impulse) / step
+    following = min(max(-answer / change, 0.0), liquid.mass)
+    held_force = force + answer + following * change
+    held_moment = moment + (sums[1] - turning) / step + liquid.centre_height * following * change
+    by_force, by_moment = _at_centre(model, model.tank_push), _at_centre(model, model.tank_turn)
+    taken = (held_force - push[START_FORCE]) * by_force + (held_moment - push[START_MOMENT]) * by_moment
+    taken *= following / (1.0 + following * (by_force + liquid.centre_height * by_moment))
+    before = following * _at_centre(model, start.a)
+    push[FOLLOWING] = following
+    push[HELD_FORCE] = held_force + before
+    push[HELD_MOMENT] = held_moment + liquid.centre_height * before
+    _start_with(model, start, push, held_force - taken, held_moment - liquid.centre_height * taken)
     return True
 
 
@@ -101,6 +199,9 @@ def carry_cells(model, scratch, state, step):
     if not liquid_evolve(liquid, cells.area, cells.flow, cells.depth, second, (1.0 - GAMMA) * step, work, sums):
         return False
     impulse = momentum - momentum_in_tank(model, cells) - liquid.mass * (after - before)
+    mean, last = push[FOLLOWING] * ((after - before) / step), push[FOLLOWING] * _at_centre(model, end.a)
+    push[FORCE], push[MOMENT] = push[HELD_FORCE] - mean, push[HELD_MOMENT] - liquid.centre_height * mean
+    push[END_FORCE], push[END_MOMENT] = push[HELD_FORCE] - last, push[HELD_MOMENT] - liquid.centre_height * last
     push[OWED_FORCE] = push[LEFT_FORCE] + impulse - step * push[FORCE]
     push[OWED_MOMENT] = push[LEFT_MOMENT] + sums[1] - step * push[MOMENT]
     kinetic_end, potential_end = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
@@ -118,8 +219,16 @@ def settle_cells(state, step):
     for i in range(state.cells_end.depth.size):
         state.push[DEEPEST] = max(state.push[DEEPEST], state.cells_end.depth[i])
     state.push[LAST_STEP] = step
+    state.push[START_FORCE], state.push[START_MOMENT] = state.push[END_FORCE], state.push[END_MOMENT]
     state.push[LEFT_FORCE] = state.push[OWED_FORCE]
     state.push[LEFT_MOMENT] = state.push[OWED_MOMENT]
+
+
+@inner_kernel
+def owed_speed(model, push):
+    """Speed (m/s) that the wagon, with the liquid that follows it, lacks by what the push owes."""
+    lightness = _at_centre(model, model.tank_push) + model.shallow.centre_height * _at_centre(model, model.tank_turn)
+    return abs(push[OWED_FORCE]) * model.tank_push[0] / (1.0 + push[FOLLOWING] * lightness)
 
 
 @inner_kernel

@@ -26,8 +26,11 @@ RAIL_SHARE = 1e-5
 
 
 @inner_kernel
-def prepare_stage(model, scratch, work, step, speed, acceleration):
-    """What all stages of implicit step `step` (s) share: rail factors, the wagon's linear part and its responses."""
+def prepare_stage(model, scratch, work, step, speed, acceleration, following):
+    """What all stages of implicit step `step` (s) share: rail factors, the wagon's linear part and its responses.
+
+    `following` (kg) is the mass that a liquid beside the stages adds to the tank at the still liquid's centre.
+    """
     prepare_rail(
         model.rail, step, speed, acceleration, scratch.rail_rows, scratch.rail_factors, scratch.flexibility
     )  # fmt: skip
@@ -36,6 +39,8 @@ def prepare_stage(model, scratch, work, step, speed, acceleration):
     work[RIGHT_HAND_SIDES] += 4
     wagon, linear = model.wagon, scratch.linear
     uu, up, pp, _, _ = liquid_reaction(model.liquid, scratch.slosh_zero, scratch.slosh_zero, step, 0.0)
+    centre = model.shallow.centre_height
+    uu, up, pp = uu + following, up + centre * following, pp + centre * centre * following
     for i in range(BODIES):
         for j in range(BODIES):
             linear[i, j] = wagon.mass[i, j] + step * (wagon.damping[i, j] + step * wagon.stiffness[i, j])
@@ -79,7 +84,8 @@ def solve_stage(model, scratch, work, base, point, locked, step, torque, push, t
     """Solve one stage; `point` enters with a guess of its accelerations and wheel loads.
 
     `base` holds the stage's coordinates and velocities without their own accelerations; `push` (N) and `turn` (N m)
-    are force and moment on the tank from a liquid that is carried along beside the stages. Returns True when
+    are force and moment on the tank from a liquid that is carried along beside the stages, but for what follows the
+    tank's acceleration. Returns True when
     converged: rail, wagon, contacts and liquid then satisfy their equations together.
     """
     rail, contact, control = model.rail, model.rail.contact, model.control

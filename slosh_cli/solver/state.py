@@ -26,6 +26,10 @@ UNKNOWNS = WHEELS + 1
 """What is left of wagon and rail at a stage: four wheel loads and the acceleration along the track."""
 
 
+PUSH_PLACES = 16
+"""Length of the shallow-water liquid's account with the wagon, `State.push`."""
+
+
 class State(NamedTuple):
     """Everything a run changes. `start`, `middle`, `end` are the stages of the step in hand.
 
@@ -33,7 +37,7 @@ class State(NamedTuple):
     something jumped in between and it says nothing.
     `losses` (7,) J as in `ledger`, `residual` (3,): before, now, largest; `locked`, `airborne` (4,) flags;
     `locked_time` (4,) s; `least`, `largest` (4,) wheel loads (N) since onset; `surface` (1,) largest rise, m;
-    `load_sum` (2,): N s of all wheels since onset, and the s. `push` (9,): the shallow-water liquid's account with the
+    `load_sum` (2,): N s of all wheels since onset, and the s. `push` (16,): the shallow-water liquid's account with the
     wagon, see `cells`.
     """
 
@@ -172,5 +176,5 @@ def new_state(start: Point, cells: Cells, events: int, first_step: float) -> Sta
         values=np.ones(events),
         cells_start=cells,
         cells_end=Cells._make(column.copy() for column in cells),
-        push=np.zeros(9),
+        push=np.zeros(PUSH_PLACES),
     )

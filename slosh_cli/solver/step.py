@@ -8,7 +8,7 @@ implicit method of order 2, L-stable, with an embedded third-order companion: R.
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel, part_kernel, vector_kernel
-from slosh_cli.solver.cells import FORCE, MOMENT, OWED_FORCE, carry_cells, expect_push
+from slosh_cli.solver.cells import FOLLOWING, HELD_FORCE, HELD_MOMENT, carry_cells, expect_push, owed_speed
 from slosh_cli.solver.contacts import respond
 from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
@@ -82,27 +82,27 @@ def take_step(model, scratch, state, time, step):
         return -1.0
     implicit = DIAGONAL * step
     speed = start.v[0] + 0.5 * (1.0 + GAMMA) * step * start.a[0]
-    prepare_stage(model, scratch, work, implicit, speed, start.a[0])
     base, push = scratch.base, state.push
+    prepare_stage(model, scratch, work, implicit, speed, start.a[0], push[FOLLOWING])
+    force, moment = push[HELD_FORCE], push[HELD_MOMENT]
     _predict_point(start, start, implicit, 0.0, implicit, base)
     _guess(start, middle, _part_of_middle(state, step), middle)
     state.clock[MIDDLE_AT] = 0.0
     torque = brake_torque(model.brake, time + GAMMA * step, phase)
-    if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque, push[FORCE], push[MOMENT]):
+    if not solve_stage(model, scratch, work, base, middle, locked, implicit, torque, force, moment):
         return -1.0
     state.clock[MIDDLE_AT] = GAMMA * step
     _predict_point(start, middle, OUTER * step, OUTER * step, implicit, base)
     _guess(start, middle, 1.0 / GAMMA, end)
     torque = brake_torque(model.brake, time + step, phase)
-    if not solve_stage(model, scratch, work, base, end, locked, implicit, torque, push[FORCE], push[MOMENT]):
+    if not solve_stage(model, scratch, work, base, end, locked, implicit, torque, force, moment):
         return -1.0
-    error = _error(model, scratch, work, start, middle, end, locked, step)
+    error = _error(model, scratch, work, start, middle, end, locked, step, push[FOLLOWING])
     if wet:
         if not carry_cells(model, scratch, state, step):
             return -1.0
         control = model.control
-        owed = abs(push[OWED_FORCE]) * model.tank_push[0]
-        error = max(error, owed / (control.speed_scale[0] * control.local_tolerance))
+        error = max(error, owed_speed(model, push) / (control.speed_scale[0] * control.local_tolerance))
     if error <= 1.0:
         balance(model, state.cells_start, middle, state.energies)
         balance(model, state.cells_end, end, state.energies)
@@ -135,12 +135,20 @@ def _rail_error(model, scratch, work, start, middle, end, step, implicit, place)
 
 
 @inner_kernel
-def _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right):
-    """Slosh part of the filtered error on the wagon's right-hand side; returns the size of the modes' own error."""
+def _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right, following):
+    """Slosh part of the filtered error on the wagon's right-hand side; returns the size of the modes' own error.
+
+    `following` (kg) is the mass that a liquid of cells adds to the tank.
+    """
     liquid, size = model.liquid, 0.0
     tank = 0.0
     for i in range(COORDINATES):
         tank += model.wagon.tank_row[i] * v_error[i]
+    if following > 0.0:
+        along = following * (tank + model.shallow.centre_height * v_error[CAR_PITCH])
+        for i in range(COORDINATES):
+            right[i] += along * model.wagon.tank_row[i]
+        right[CAR_PITCH] += model.shallow.centre_height * along
     for n in range(start.slosh.size):
         place = step * (
             ERROR_START * start.slosh_rate[n] + ERROR_MIDDLE * middle.slosh_rate[n] + ERROR_END * end.slosh_rate[n]
@@ -167,7 +175,7 @@ def _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, ri
 
 
 @part_kernel
-def _error(model, scratch, work, start, middle, end, locked, step):
+def _error(model, scratch, work, start, middle, end, locked, step, following):
     """Error of the step over the allowed one, filtered by `(1 - d J)^-1` so that stiff parts do not rule it."""
     control, wagon = model.control, model.wagon
     implicit = DIAGONAL * step
@@ -179,7 +187,7 @@ def _error(model, scratch, work, start, middle, end, locked, step):
         for j in range(COORDINATES):
             total += wagon.mass[i, j] * v_error[j] - implicit * wagon.stiffness[i, j] * q_error[j]
         right[i] = total
-    slosh = _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right)
+    slosh = _slosh_error(model, start, middle, end, step, implicit, q_error, v_error, right, following)
     _rail_error(model, scratch, work, start, middle, end, step, implicit, scratch.free)
     solve_symmetric(scratch.linear, right[:BODIES])
     for i in range(WHEELS):

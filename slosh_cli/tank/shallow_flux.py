@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section_table import pressure_height, section_at
+from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
 
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
@@ -81,10 +81,11 @@ def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
         if wet:
             slope_depth[i] = _limited(surface_b, surface_a, mild * depth[i])
             slope_speed[i] = _limited(speed_b, speed_a, mild * math.sqrt(liquid.gravity * depth[i]))
-        if abs(depth[i] - roof) < 0.5 * abs(slope_depth[i] - tilt):  # the surface meets the roof inside the cell
-            slope_depth[i] = slope_speed[i] = 0.0
-        # neither end of a cell lies below the bed
-        slope_depth[i] = min(max(slope_depth[i] - tilt, -2.0 * depth[i]), 2.0 * depth[i])
+        # no cell's surface reaches through the roof: the fast waves of a full section begin where its mean is full
+        room = 2.0 * max(abs(depth[i] - roof) - LEDGE * roof, 0.0)
+        # nor does either end of a cell lie below the bed
+        room = min(room, 2.0 * depth[i])
+        slope_depth[i] = min(max(slope_depth[i] - tilt, -room), room)
 
 
 @kernel

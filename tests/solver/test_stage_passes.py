@@ -22,7 +22,7 @@ UNIT_LOADS = 4
 @numba.njit
 def solved(model, scratch, work, base, point, locked, step, speed):
     """One stage whose rail was factored for another `speed` (m/s)."""
-    prepare_stage(model, scratch, work, step, speed, 0.0)
+    prepare_stage(model, scratch, work, step, speed, 0.0, 0.0)
     return solve_stage(model, scratch, work, base, point, locked, step, 5e3, 0.0, 0.0)
 
 
