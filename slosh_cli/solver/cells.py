@@ -23,7 +23,7 @@ import math
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.solver.method import GAMMA
 from slosh_cli.solver.state import PUSH_PLACES
-from slosh_cli.tank.section_table import potential_at, section_at
+from slosh_cli.tank.section_table import section_at
 from slosh_cli.tank.shallow import liquid_energy_in_tank, liquid_evolve
 from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
@@ -75,19 +75,25 @@ def _at_centre(model, accelerations):
 
 
 @inner_kernel
-def _reached_mass(liquid, depth, step):
+def _reached_mass(liquid, cells, step):
     """Mass (kg) that bears on walls and baffles when the tank's acceleration changes for `step` (s).
 
     The mean force of that time is that of half the length which waves run. The surface's slope within a cell follows an
-    acceleration at once, so that half a cell counts in any step.
+    acceleration at once, so that half a cell counts in any step. A baffle counts by the part of a flow that it bars.
     """
     total = 0.0
     for face in range(liquid.cells + 1):
-        if 0 < face < liquid.cells and liquid.loss[face] == 0.0:
+        wall = face in (0, liquid.cells)
+        if not wall and liquid.loss[face] == 0.0:
             continue
         for cell in range(max(face - 1, 0), min(face + 1, liquid.cells)):
-            area, _, width = section_at(liquid.table, depth[cell])
-            total += area * (liquid.spacing + step * math.sqrt(liquid.gravity * area / width))
+            area, _, width = section_at(liquid.table, cells.depth[cell])
+            if area > 0.0:
+                wave = math.sqrt(liquid.gravity * area / width)
+                bars = 1.0
+                if not wall:
+                    bars -= 2.0 / (1.0 + math.sqrt(1.0 + liquid.loss[face] * abs(cells.flow[cell]) / (area * wave)))
+                total += bars * area * (liquid.spacing + step * wave)
     return min(0.5 * liquid.density * total, liquid.mass)
 
 
@@ -116,6 +122,15 @@ def _start_with(model, start, push, force, moment):
 
 
 @inner_kernel
+def _weights_moment(liquid, cells):
+    """Moment (N m) of the liquid's weight about the tank's middle, nose-down."""
+    arm = 0.0
+    for i in range(liquid.cells):
+        arm += cells.area[i] * (i + 0.5 - 0.5 * liquid.cells)
+    return liquid.density * liquid.gravity * liquid.spacing * liquid.spacing * arm
+
+
+@inner_kernel
 def expect_push(model, scratch, state, step):
     """Estimate the liquid's mean force and moment over the step and let the start's accelerations follow.
 
@@ -135,7 +150,7 @@ def expect_push(model, scratch, state, step):
     moment = sums[1] / step + push[LEFT_MOMENT] / paid_over
     by_force, by_moment = _at_centre(model, model.tank_push), _at_centre(model, model.tank_turn)
     lightness = by_force + liquid.centre_height * by_moment
-    reached = _reached_mass(liquid, state.cells_start.depth, step)
+    reached = _reached_mass(liquid, state.cells_start, step)
     if reached * lightness > LOOSE:
         change = (force - push[START_FORCE]) * by_force + (moment - push[START_MOMENT]) * by_moment
         change /= 1.0 + reached * lightness
@@ -196,6 +211,7 @@ def carry_cells(model, scratch, state, step):
     work = scratch.cell_work
     if not liquid_evolve(liquid, cells.area, cells.flow, cells.depth, first, GAMMA * step, work, sums):
         return False
+    momentum_halfway = momentum_in_tank(model, cells)
     if not liquid_evolve(liquid, cells.area, cells.flow, cells.depth, second, (1.0 - GAMMA) * step, work, sums):
         return False
     impulse = momentum - momentum_in_tank(model, cells) - liquid.mass * (after - before)
@@ -206,6 +222,14 @@ def carry_cells(model, scratch, state, step):
     push[OWED_MOMENT] = push[LEFT_MOMENT] + sums[1] - step * push[MOMENT]
     kinetic_end, potential_end = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
     push[LOSS] = sums[2] - (kinetic_end + potential_end - kinetic - potential)
+    # the walls' pressures turn the tank about the still centre, the liquid feels nothing of it (model section 10)
+    pitch, turn = 0.5 * (start.q[CAR_PITCH] + end.q[CAR_PITCH]), end.q[CAR_PITCH] - start.q[CAR_PITCH]
+    weights, weights_end = _weights_moment(liquid, state.cells_start), _weights_moment(liquid, cells)
+    centred = push[FORCE] + liquid.mass * liquid.gravity * pitch
+    apart = push[MOMENT] - 0.5 * (weights + weights_end) - liquid.centre_height * centred
+    # what flows down the tilted bottom are the fluxes of mass, what gravity drives there are the cells' own flows
+    flown = 0.5 * step * (GAMMA * momentum + momentum_halfway + (1.0 - GAMMA) * momentum_in_tank(model, cells))
+    push[LOSS] -= apart * turn + pitch * (liquid.gravity * flown - (weights_end - weights))
     return True
 
 
@@ -238,12 +262,8 @@ def cells_energy(model, cells, point):
     speed, pitch = tank_speed(model, point), point.q[CAR_PITCH]
     kinetic, potential = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
     kinetic += speed * momentum_in_tank(model, cells) + 0.5 * liquid.mass * speed * speed
-    arm = height = 0.0
-    for i in range(liquid.cells):
-        arm += cells.area[i] * (i + 0.5 - 0.5 * liquid.cells) * liquid.spacing
-        height += potential_at(liquid.table, cells.depth[i])
-    weight = liquid.density * liquid.gravity * liquid.spacing
-    return kinetic, potential - weight * (arm * pitch + 0.5 * height * pitch * pitch)
+    tilt = 0.5 * liquid.mass * liquid.gravity * liquid.centre_height * pitch
+    return kinetic, potential - (_weights_moment(liquid, cells) + tilt) * pitch
 
 
 @inner_kernel
