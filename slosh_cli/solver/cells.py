@@ -249,10 +249,18 @@ def settle_cells(state, step):
 
 
 @inner_kernel
-def owed_speed(model, push):
-    """Speed (m/s) that the wagon, with the liquid that follows it, lacks by what the push owes."""
+def missed_speed(model, push, step, allowed):
+    """Speed (m/s) that the wagon, with the liquid that follows it, lacks by what the push of `step` (s) misses.
+
+    That is what the push then owes, unless earlier steps left more than is `allowed` (m/s) as the wagon is followed
+    now: no step, however short, could mend that, and the step's own miss counts.
+    """
     lightness = _at_centre(model, model.tank_push) + model.shallow.centre_height * _at_centre(model, model.tank_turn)
-    return abs(push[OWED_FORCE]) * model.tank_push[0] / (1.0 + push[FOLLOWING] * lightness)
+    by_impulse = model.tank_push[0] / (1.0 + push[FOLLOWING] * lightness)
+    missed = push[OWED_FORCE]
+    if push[FOLLOWING] > 0.0 or abs(push[LEFT_FORCE]) * by_impulse > allowed:
+        missed -= push[LEFT_FORCE] * (1.0 - step / max(step, push[LAST_STEP]))
+    return abs(missed) * by_impulse
 
 
 @inner_kernel

@@ -8,7 +8,7 @@ implicit method of order 2, L-stable, with an embedded third-order companion: R.
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel, part_kernel, vector_kernel
-from slosh_cli.solver.cells import FOLLOWING, HELD_FORCE, HELD_MOMENT, carry_cells, expect_push, owed_speed
+from slosh_cli.solver.cells import FOLLOWING, HELD_FORCE, HELD_MOMENT, carry_cells, expect_push, missed_speed
 from slosh_cli.solver.contacts import respond
 from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
@@ -101,8 +101,8 @@ def take_step(model, scratch, state, time, step):
     if wet:
         if not carry_cells(model, scratch, state, step):
             return -1.0
-        control = model.control
-        error = max(error, owed_speed(model, push) / (control.speed_scale[0] * control.local_tolerance))
+        allowed = model.control.speed_scale[0] * model.control.local_tolerance
+        error = max(error, missed_speed(model, push, step, allowed) / allowed)
     if error <= 1.0:
         balance(model, state.cells_start, middle, state.energies)
         balance(model, state.cells_end, end, state.energies)
