@@ -112,6 +112,16 @@ def _mean_push(model, scratch, state, acceleration, step):
 
 
 @inner_kernel
+def _whole_impulse(model, state, acceleration, step):
+    """Impulse (N s) of the walls in a step of constant `acceleration`, by what the liquid's momentum lost in it.
+
+    The walls' pressures miss a part of it in cells whose surface is steep, as the section's area is not linear there.
+    """
+    change = momentum_in_tank(model, state.cells_end) - momentum_in_tank(model, state.cells_start)
+    return -change - model.shallow.mass * acceleration * step
+
+
+@inner_kernel
 def _start_with(model, start, push, force, moment):
     """Let the start's accelerations follow a push of `force` and `moment`."""
     for i in range(COORDINATES):
@@ -144,17 +154,17 @@ def expect_push(model, scratch, state, step):
         acceleration += model.wagon.tank_row[i] * start.a[i]
     if not _mean_push(model, scratch, state, acceleration, step):
         return False
+    by_force, by_moment = _at_centre(model, model.tank_push), _at_centre(model, model.tank_turn)
+    heaviness = _reached_mass(liquid, state.cells_start, step) * (by_force + liquid.centre_height * by_moment)
+    if heaviness > LOOSE:
+        sums[0] = _whole_impulse(model, state, acceleration, step)
     pitch = start.q[CAR_PITCH] + 0.5 * step * start.v[CAR_PITCH]
     paid_over = max(step, push[LAST_STEP])
     force = sums[0] / step + push[LEFT_FORCE] / paid_over - liquid.mass * liquid.gravity * pitch
     moment = sums[1] / step + push[LEFT_MOMENT] / paid_over
-    by_force, by_moment = _at_centre(model, model.tank_push), _at_centre(model, model.tank_turn)
-    lightness = by_force + liquid.centre_height * by_moment
-    reached = _reached_mass(liquid, state.cells_start, step)
-    if reached * lightness > LOOSE:
+    if heaviness > LOOSE:
         change = (force - push[START_FORCE]) * by_force + (moment - push[START_MOMENT]) * by_moment
-        change /= 1.0 + reached * lightness
-        return _follow(model, scratch, state, step, acceleration, change, force, moment)
+        return _follow(model, scratch, state, step, acceleration, change / (1.0 + heaviness), force, moment)
     push[FOLLOWING] = 0.0
     push[HELD_FORCE], push[HELD_MOMENT] = force, moment
     _start_with(model, start, push, force, moment)
@@ -173,7 +183,7 @@ def _follow(model, scratch, state, step, acceleration, change, force, moment):
     impulse, turning = sums[0], sums[1]
     if not _mean_push(model, scratch, state, acceleration + change, step):
         return False
-    answer = (sums[0] - impulse) / step
+    answer = (_whole_impulse(model, state, acceleration + change, step) - impulse) / step
     following = min(max(-answer / change, 0.0), liquid.mass)
     held_force = force + answer + following * change
     held_moment = moment + (sums[1] - turning) / step + liquid.centre_height * following * change

@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.results.tables import summary_row
 from slosh_cli.results.validity import UNLOADING_LIMIT
-from slosh_cli.solver.cells import FORCE, LAST_STEP, LEFT_FORCE, expect_push
+from slosh_cli.solver.cells import LAST_STEP, LEFT_FORCE, START_FORCE, expect_push
 from slosh_cli.solver.events import EVENT_COUNT
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
@@ -173,7 +173,7 @@ def test_a_short_step_does_not_bear_all_that_a_long_one_left_open(shipped):
         state = new_state(start.start, start.cells, EVENT_COUNT, 1e-4)
         state.push[LEFT_FORCE], state.push[LAST_STEP] = owed, 0.01
         assert expected_push(start.model, scratch, state, 1e-4)
-        forces.append(state.push[FORCE])
+        forces.append(state.push[START_FORCE])
         start.start.a[:] = 0.0
     assert forces[1] - forces[0] == pytest.approx(1.0 / 0.01, rel=1e-6)
 
