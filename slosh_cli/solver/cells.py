@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.solver.method import GAMMA
-from slosh_cli.tank.section_table import potential_at
+from slosh_cli.tank.section_table import potential_at, stored_level
 from slosh_cli.tank.shallow import liquid_energy_in_tank, liquid_evolve
 from slosh_cli.track.vectors import copy, fill
 from slosh_cli.wagon.coordinates import CAR_PITCH, COORDINATES
@@ -132,7 +132,7 @@ def cells_energy(model, cells, point):
     arm = height = 0.0
     for i in range(liquid.cells):
         arm += cells.area[i] * (i + 0.5 - 0.5 * liquid.cells) * liquid.spacing
-        height += potential_at(liquid.table, cells.depth[i])
+        height += potential_at(liquid.table, stored_level(liquid.table, cells.area[i], cells.depth[i]))
     weight = liquid.density * liquid.gravity * liquid.spacing
     return kinetic, potential - weight * (arm * pitch + 0.5 * height * pitch * pitch)
 
