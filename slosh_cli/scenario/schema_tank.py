@@ -87,13 +87,13 @@ Coefficients: TypeAlias = Annotated[
 
 
 class Baffle(Part):
-    """A transverse wall with an opening, for the shallow-water model."""
+    """A transverse wall, closed or with an opening, for the shallow-water model."""
 
     position: Annotated[float, Quantity("length", Range(0.0, 200.0), "5 m")] = Field(
         description="Distance from the rear end wall, m; taken to the nearest face between cells."
     )
-    opening: Annotated[float, Number(Range(0.01, 1.0), "0.3")] = Field(
-        description="Open part of the wall's area, 0.01 to 1 (no wall)."
+    opening: Annotated[float, Number(Range(0.0, 1.0), "0.3")] = Field(
+        description="Open part of the wall's area, from 0 (a closed bulkhead) to 1 (no wall)."
     )
 
 
@@ -103,7 +103,7 @@ class TankBase(Aliased):
     length: Annotated[float, Quantity("length", Range(0.05, 200.0), "15.5 m")] = Field(
         description="Inner length between the flat ends, m."
     )
-    fill: Annotated[float, Number(Range(0.02, 0.98), "0.5")] = Field(
+    fill: Annotated[float, Number(Range(0.02, 0.995), "0.5")] = Field(
         description="Depth of the liquid as a fraction of the tank's inner height."
     )
     bottom_height: Annotated[float, Quantity("length", Range(0.0, 6.0), "1.15 m")] = Field(
@@ -121,7 +121,7 @@ class TankBase(Aliased):
         description="How many odd longitudinal modes to compute; not to be set with given coefficients.",
     )
     baffles: tuple[Baffle, ...] = Field(
-        default=(), description="Transverse walls with openings; the modal liquid knows none."
+        default=(), description="Transverse walls, closed or with openings; the modal liquid knows none."
     )
 
 

@@ -83,7 +83,7 @@ def _reached_mass(liquid, cells, step):
     """
     total = 0.0
     for face in range(liquid.cells + 1):
-        wall = face in (0, liquid.cells)
+        wall = face in (0, liquid.cells) or liquid.loss[face] == math.inf
         if not wall and liquid.loss[face] == 0.0:
             continue
         for cell in range(max(face - 1, 0), min(face + 1, liquid.cells)):

@@ -105,9 +105,9 @@ class Excitation:
     that is at rest in the tank; `surface_front`, `surface_rear` m are rises over the still level at the end walls, all
     (n,). Of a shallow-water liquid force and moment are means over the output interval around each time. `mass` kg of
     liquid, `largest_deceleration` m/s^2, `mass_error` the largest change of the liquid's mass, as a share of it;
+    `largest_head` m the largest head of a shallow-water liquid under the roof, zero where it never ran full;
     `accuracy` is what the modes' histories still changed by with the last halving of the steps, relative, and zero for
-    the other liquids. `largest_head` m is the largest head of pressure above the roof at an end wall. `reason` says why
-    the history ends early, empty when it does not.
+    the other liquids. `reason` says why the history ends early, empty when it does not.
     """
 
     time: Array
@@ -119,8 +119,8 @@ class Excitation:
     mass: float
     largest_deceleration: float
     mass_error: float = 0.0
-    accuracy: float = 0.0
     largest_head: float = 0.0
+    accuracy: float = 0.0
     reason: str = ""
 
     @property
@@ -250,7 +250,7 @@ def _excite_cells(
     ends = _with_corners(deceleration, np.union1d(time, borders))
     lengths = np.diff(ends)
     means = np.diff(deceleration.speed_lost(ends)) / lengths
-    rows = np.zeros((lengths.size, 5))
+    rows = np.zeros((lengths.size, 6))
     work = np.zeros((WORK_ROWS, liquid.cells + 1))
     done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, means, work, np.zeros(4), rows)
     last = int(np.searchsorted(borders, ends[done], "right")) - 1  # as many rows as have their whole interval
@@ -271,6 +271,6 @@ def _excite_cells(
         mass=liquid.mass,
         largest_deceleration=largest,
         mass_error=float(np.abs(rows[:done, 4] / volume - 1.0).max(initial=0.0)),
-        largest_head=max(float(rows[:done, 2:4].max(initial=0.0) - liquid.table.depth[-1]), 0.0),
+        largest_head=float(np.max(rows[:done, 5] - liquid.table.depth[-1], initial=0.0)),
         reason=reason,
     )

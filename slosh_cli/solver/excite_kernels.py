@@ -77,10 +77,10 @@ def cells_history(
 ) -> int:
     """Cells through stretches of `lengths` (s) with the mean decelerations `means` (m/s^2); returns how many.
 
-    Row s of `rows` (stretches, 5) receives the impulse N s of the force and N m s of the moment on the tank during the
-    stretch, and at its end the depths m at the front and the rear wall and the volume m^3. `work` is
-    (WORK_ROWS, cells + 1), `sums` (4,). Fewer stretches than given are returned where the liquid's speed is no longer
-    finite.
+    Row s of `rows` (stretches, 6) receives the impulse N s of the force and N m s of the moment on the tank during the
+    stretch, and at its end the depths m at the front and the rear wall, the volume m^3 and the largest depth m. `work`
+    is (WORK_ROWS, cells + 1), `sums` (4,). Fewer stretches than given are returned where the liquid's speed is no
+    longer finite.
     """
     for s in range(lengths.size):
         fill(sums, 0.0)
@@ -89,8 +89,9 @@ def cells_history(
         row = rows[s]
         row[0], row[1] = sums[0], sums[1]
         row[2], row[3] = depth[liquid.cells - 1], depth[0]
-        total = 0.0
+        total = deepest = 0.0
         for i in range(liquid.cells):
             total += area[i]
-        row[4] = total * liquid.spacing
+            deepest = max(deepest, depth[i])
+        row[4], row[5] = total * liquid.spacing, deepest
     return lengths.size

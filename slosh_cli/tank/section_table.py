@@ -25,7 +25,9 @@ LEDGE = 1e-9
 
 
 class SectionTable(NamedTuple):
-    """Section at the depths (K,) m up to where the slot of `slot_width` (m) takes over; the roof is at `roof` (m).
+    """Section at the depths (K,) m up to where the slot of `slot_width` (m) takes over.
+
+    The roof is at `roof` (m); up to there the section holds `full_area` (m^2).
 
     `area` m^2, `width` m, `first` = INT z b dz m^3, `pressure` = INT (h - z) b dz m^3 (the moment I1 of the
     equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `depth_start`, `area_start` (BINS + 1,): the last
@@ -42,6 +44,7 @@ class SectionTable(NamedTuple):
     area_start: NDArray[np.int64]
     slot_width: float
     roof: float
+    full_area: float
 
 
 def _slot_start(section: Section, slot_width: float) -> float:
@@ -94,6 +97,7 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         area_start=_starts(area),
         slot_width=slot_width,
         roof=section.height,
+        full_area=section.area(section.height),
     )
 
 
@@ -165,6 +169,20 @@ def section_at(table, depth):
     area, width = _cubic(table.depth, table.area, table.width, k, depth)
     pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
     return area, pressure, max(width, 1e-12)
+
+
+@kernel
+def full_level(table):
+    """Depth (m) at which the whole section is full: the roof, but for the sliver below it that the slot replaces."""
+    last = table.depth.size - 1
+    return table.depth[last] + (table.full_area - table.area[last]) / table.slot_width
+
+
+@kernel
+def stored_level(table, area, depth):
+    """Depth (m) to which a cell holds its area (m^2): under a column's pressure less than its depth (`roof`)."""
+    last = table.depth.size - 1
+    return min(depth, table.depth[last] + max(area - table.area[last], 0.0) / table.slot_width)
 
 
 @kernel

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at
+from slosh_cli.tank.roof import stand_still, still_plane, stop_columns
+from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import fluxes
 
 Array = NDArray[np.float64]
@@ -25,7 +26,7 @@ MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
 SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
-WORK_ROWS = 16
+WORK_ROWS = 19
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
 FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
@@ -87,12 +88,16 @@ def _calm_films(liquid, area, flow, share):
 
 
 @kernel
-def _euler(liquid, area, flow, mass, momentum, source, step, share, kept, area_end, flow_end):
-    """An explicit Euler step (s) of areas and flows under given fluxes; `kept` (cells + 1,) is scratch."""
+def _euler(liquid, area, flow, still, mass, momentum, source, step, share, kept, area_end, flow_end):
+    """An explicit Euler step (s) of areas and flows under given fluxes; `kept` (cells + 1,) is scratch.
+
+    Cells of a full column, marked in `still`, neither gain nor lose.
+    """
     _keep_wet(liquid, area, mass, step, kept)
     for i in range(liquid.cells):
         area_end[i] = max(area[i] - step * (kept[i + 1] - kept[i]) / liquid.spacing, 0.0)
-        flow_end[i] = flow[i] + step * (source[i] - (momentum[i + 1] - momentum[i]) / liquid.spacing)
+        change = source[i] - (momentum[i + 1] - momentum[i]) / liquid.spacing
+        flow_end[i] = flow[i] + step * change if still[i] == 0.0 else flow[i]
     _calm_films(liquid, area_end, flow_end, share)
 
 
@@ -113,6 +118,15 @@ def _add_impulses(liquid, area, flow, push, acceleration, duration, sums):
 
 
 @kernel
+def _stop(liquid, stopped, sums):
+    """Add to `sums` the impulses on the tank of a flow (m^3/s, summed over cells) that came to rest in full cells."""
+    impulse = liquid.density * liquid.spacing * stopped
+    last = liquid.table.depth.size - 1
+    sums[0] += impulse
+    sums[1] += impulse * liquid.table.first[last] / liquid.table.area[last]
+
+
+@kernel
 def _longest_step(liquid, speed, acceleration, courant):
     """Step (s) in which a wave of `speed` (m/s), sped up by the acceleration, runs through `courant` cells."""
     reach = courant * liquid.spacing
@@ -130,23 +144,32 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
     mass, momentum, source, push = work[2], work[3], work[4], work[5]
     mass_2, momentum_2, source_2, push_2 = work[6], work[7], work[8], work[9]
     area_1, flow_1, depth_1, area_2, flow_2, kept = work[10], work[11], work[12], work[13], work[14], work[15]
+    still, still_1, plane = work[16], work[17], work[18]
+    for i in range(liquid.cells):
+        if depth[i] >= liquid.table.depth[liquid.table.depth.size - 1]:  # it may be a column's, under another tilt
+            depth[i] = depth_of(liquid.table, area[i])
+    met = still_plane(liquid, area, acceleration, plane)
+    stand_still(liquid, area, depth, plane, met, acceleration, still)
     remaining = duration
     while remaining > 0.0:
-        speed = fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source, push)
+        speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
         limit = _longest_step(liquid, speed, acceleration, COURANT)
         while True:
             if not limit > SHORTEST_STEP:
                 return False
             step = remaining / math.ceil(remaining / limit)
             share = step / limit
-            _euler(liquid, area, flow, mass, momentum, source, step, share, kept, area_1, flow_1)
+            _euler(liquid, area, flow, still, mass, momentum, source, step, share, kept, area_1, flow_1)
             liquid_depths(liquid, area_1, depth_1)
-            speed = fluxes(liquid, area_1, flow_1, depth_1, acceleration, work, mass_2, momentum_2, source_2, push_2)
+            stand_still(liquid, area_1, depth_1, plane, met, acceleration, still_1)
+            speed = fluxes(
+                liquid, area_1, flow_1, depth_1, still_1, acceleration, work, mass_2, momentum_2, source_2, push_2
+            )
             longest = _longest_step(liquid, speed, acceleration, MOST_COURANT)
             if step <= longest:
                 break
             limit = min(longest, 0.9 * step)
-        _euler(liquid, area_1, flow_1, mass_2, momentum_2, source_2, step, share, kept, area_2, flow_2)
+        _euler(liquid, area_1, flow_1, still_1, mass_2, momentum_2, source_2, step, share, kept, area_2, flow_2)
         _add_impulses(liquid, area, flow, push, acceleration, 0.5 * step, sums)
         _add_impulses(liquid, area_1, flow_1, push_2, acceleration, 0.5 * step, sums)
         for i in range(liquid.cells):
@@ -154,6 +177,9 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             flow[i] = 0.5 * (flow[i] + flow_2[i])
         _calm_films(liquid, area, flow, share)
         liquid_depths(liquid, area, depth)
+        stand_still(liquid, area, depth, plane, met, acceleration, still)
+        if met:
+            _stop(liquid, stop_columns(liquid, flow, still, step), sums)
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0
     return True
@@ -166,5 +192,5 @@ def liquid_energy_in_tank(liquid, area, flow, depth):
     for i in range(liquid.cells):
         if area[i] > 0.0:
             kinetic += 0.5 * flow[i] * flow[i] / area[i]
-        potential += liquid.gravity * potential_at(liquid.table, depth[i])
+        potential += liquid.gravity * potential_at(liquid.table, stored_level(liquid.table, area[i], depth[i]))
     return liquid.density * liquid.spacing * kinetic, liquid.density * liquid.spacing * potential

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.roof import column_push
 from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
 
 DRY = 1e-7
@@ -58,8 +59,11 @@ def _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_
 
 
 @kernel
-def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
-    """Limited changes over a cell of depth (m, the still tilt included) and speed (m/s)."""
+def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed):
+    """Limited changes over a cell of depth (m, the still tilt included) and speed (m/s).
+
+    Closed bulkheads and columns at rest (`still`) are walls.
+    """
     cells, mild = liquid.cells, MILD / liquid.cells
     tilt = acceleration * liquid.spacing / liquid.gravity
     last = liquid.table.area.size - 1
@@ -69,11 +73,11 @@ def _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed):
         surface_b = surface_a = 0.0
         speed_b, speed_a = 2.0 * speed, -2.0 * speed
         wet = area[i] > dry
-        if i > 0:
+        if i > 0 and liquid.loss[i] < math.inf and still[i - 1] == 0.0:
             wet = wet and area[i - 1] > dry
             surface_b = depth[i] - depth[i - 1] + tilt
             speed_b = speed - (flow[i - 1] / area[i - 1] if area[i - 1] > dry else 0.0)
-        if i < cells - 1:
+        if i < cells - 1 and liquid.loss[i + 1] < math.inf and still[i + 1] == 0.0:
             wet = wet and area[i + 1] > dry
             surface_a = depth[i + 1] - depth[i] + tilt
             speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
@@ -94,14 +98,14 @@ def _baffle(gravity, loss, area_l, flow_l, pressure_l, width_l, area_r, flow_r, 
 
     Between the fluxes of an open face and those on a closed wall, as the flow m lies between the open face's and none:
     such a mean of two fluxes that feed no energy feeds none. The difference of momentum that is left across the baffle
-    is its loss, `0.5 loss m |m| / A` of the narrower side.
+    is its loss, `0.5 loss m |m| / A` of the narrower side. An infinite loss is a closed wall.
     """
     mass, open_, fastest = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r)
     _, wall_l, fast_l = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
     _, wall_r, fast_r = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
     fastest = max(fastest, fast_l, fast_r)
     narrow = min(area_l, area_r)
-    if narrow <= 0.0:
+    if narrow <= 0.0 or loss == math.inf:
         return 0.0, wall_l, wall_r, fastest
     acoustic = (math.sqrt(gravity * area_l / width_l) + math.sqrt(gravity * area_r / width_r)) * abs(mass)
     drive = max(math.copysign(1.0, mass) * (wall_l - wall_r), acoustic)
@@ -111,9 +115,21 @@ def _baffle(gravity, loss, area_l, flow_l, pressure_l, width_l, area_r, flow_r, 
 
 
 @kernel
-def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source, push):
+def _column_face(gravity, still_l, area_l, flow_l, pressure_l, width_l, still_r, area_r, flow_r, pressure_r, width_r):
+    """Momentum flux (m^4/s^2) and fastest signal (m/s) where a column at rest reflects an open surface; 0 inside it."""
+    momentum = signal = 0.0
+    if still_l == 0.0:
+        _, momentum, signal = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
+    elif still_r == 0.0:
+        _, momentum, signal = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
+    return momentum, signal
+
+
+@kernel
+def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push):
     """Fluxes of mass and momentum through the faces (cells + 1,), and the momentum source (cells,) of the tilt.
 
+    Cells marked in `still` (cells,) are columns at rest between a wall and the first open surface, which they reflect.
     `push` (2,) gets the force over density on all walls and baffles (m^4/s^2, forward) and its moment (m^5/s^2).
     Returns the fastest signal (m/s).
 
@@ -122,7 +138,7 @@ def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source
     """
     cells, table, gravity = liquid.cells, liquid.table, liquid.gravity
     slope_depth, slope_speed = work[0], work[1]
-    _slopes(liquid, area, flow, depth, acceleration, slope_depth, slope_speed)
+    _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed)
     dry = DRY * table.area[table.area.size - 1]
     tilt = acceleration * liquid.spacing / gravity
     area_b = flow_b = pressure_b = 0.0
@@ -141,10 +157,29 @@ def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source
         jump = 0.0
         if i == 0:  # the wall mirrors the state
             area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
-        if liquid.loss[i] > 0.0:
+        if i > 0 and still[i - 1] + still[i] > 0.0 and liquid.loss[i] < math.inf:
+            mass[i] = 0.0
+            momentum[i], signal = _column_face(
+                gravity,
+                still[i - 1],
+                area_b,
+                flow_b,
+                pressure_b,
+                width_b,
+                still[i],
+                area_l,
+                flow_l,
+                pressure_l,
+                width_l,
+            )
+        elif liquid.loss[i] > 0.0:
             mass[i], before, after, signal = _baffle(
                 gravity, liquid.loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
             )
+            if still[i - 1] > 0.0:
+                before = 0.0  # `column_push` adds what a column bears
+            if still[i] > 0.0:
+                after = 0.0
             momentum[i] = before
             jump = after - before
             push[0] -= jump
@@ -153,7 +188,7 @@ def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source
             mass[i], momentum[i], signal = _hll(
                 gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
             )
-        fastest = max(fastest, signal)
+        fastest = max(fastest, signal if i > 0 or still[0] == 0.0 else 0.0)
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
         source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / liquid.spacing
@@ -162,8 +197,8 @@ def fluxes(liquid, area, flow, depth, acceleration, work, mass, momentum, source
         gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b
     )
     mass[0] = mass[cells] = 0.0
-    push[0] += momentum[cells] - momentum[0]
-    push[1] += momentum[cells] * pressure_height(table, depth[cells - 1]) - momentum[0] * pressure_height(
-        table, depth[0]
-    )
-    return max(fastest, signal)
+    after, before = (1.0 - still[0]) * momentum[0], (1.0 - still[cells - 1]) * momentum[cells]
+    push[0] += before - after
+    push[1] += before * pressure_height(table, depth[cells - 1]) - after * pressure_height(table, depth[0])
+    column_push(liquid, area, acceleration, momentum, still, push)
+    return max(fastest, signal) if still[cells - 1] == 0.0 else fastest

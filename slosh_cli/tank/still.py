@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -43,7 +44,7 @@ class TransverseWall(Protocol):
 
     @property
     def opening(self) -> float:
-        """Open part of its area."""
+        """Open part of its area; 0: a closed bulkhead."""
 
 
 class FlowingTank(LoadedTank, Protocol):
@@ -51,7 +52,7 @@ class FlowingTank(LoadedTank, Protocol):
 
     @property
     def baffles(self) -> Sequence[TransverseWall]:
-        """Transverse walls with openings."""
+        """Transverse walls, closed or with openings."""
 
     @property
     def liquid(self) -> FlowingLiquid:
@@ -76,18 +77,27 @@ def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[Sha
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
 
 
-def frequency_excess(tank: LoadedTank, gravity: float) -> float:
+def longest_section(tank: FlowingTank) -> float:
+    """Length (m) of the longest part of the tank between end walls and closed bulkheads."""
+    faces = [place for place, loss in enumerate(_baffle_losses(tank)) if math.isinf(loss)]
+    cells = tank.liquid.cells
+    return max(end - start for start, end in pairwise([0, *faces, cells])) / cells * tank.length
+
+
+def frequency_excess(tank: FlowingTank, gravity: float) -> float:
     """How much too high shallow water's first frequency is, by potential flow in this very section.
 
-    Where the section has no finite-element mesh, that of a box of the same mean depth h = A/B: `sqrt(kh/tanh kh) - 1`.
+    It is that of the longest part between closed bulkheads. Where the section has no finite-element mesh, that of a box
+    of the same mean depth h = A/B: `sqrt(kh/tanh kh) - 1`.
     """
     section = section_of(tank)
     depth = tank.fill * section.height
     mean_depth = section.area(depth) / section.surface_width(depth)
-    wavenumber = math.pi / tank.length
+    length = longest_section(tank)
+    wavenumber = math.pi / length
     frequency = wavenumber * math.sqrt(gravity * mean_depth)
     try:
-        return frequency / longitudinal_modes(section, depth, tank.length).modes[0].frequency - 1.0
+        return frequency / longitudinal_modes(section, depth, length).modes[0].frequency - 1.0
     except TankError:
         return math.sqrt(wavenumber * mean_depth / math.tanh(wavenumber * mean_depth)) - 1.0
 
@@ -95,8 +105,11 @@ def frequency_excess(tank: LoadedTank, gravity: float) -> float:
 def baffle_loss(opening: float) -> float:
     """Loss coefficient, on the speed in the tank, of a thin wall with a sharp-edged `opening` (part of the area).
 
-    I. E. Idelchik, Handbook of Hydraulic Resistance, on thin orifices: `(1 + 0.707 sqrt(1 - f) - f)^2 / f^2`.
+    I. E. Idelchik, Handbook of Hydraulic Resistance, on thin orifices: `(1 + 0.707 sqrt(1 - f) - f)^2 / f^2`; infinite
+    for a closed wall.
     """
+    if opening**2 == 0.0:
+        return math.inf
     return float((1 + 0.707 * np.sqrt(1 - opening) - opening) ** 2 / opening**2)
 
 

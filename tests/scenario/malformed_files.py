@@ -167,7 +167,7 @@ OVERRIDES = (
     override(
         "override out of range", "tank.fill=1.2",
         expected=(
-            ("--set tank.fill", "tank.fill", "must be a number from 0.02 to 0.98", "`1.2`", "such as `0.5`"),
+            ("--set tank.fill", "tank.fill", "must be a number from 0.02 to 0.995", "`1.2`", "such as `0.5`"),
         ),
     ),
     override(

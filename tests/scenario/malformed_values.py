@@ -199,7 +199,7 @@ UNITS = (
     ),
     one(
         "unit where a plain number belongs", "fill: 0.5", "fill: 1.5 m",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`1.5 m`", "number without a unit, such as `0.5`"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.995", "`1.5 m`", "number without a unit, such as `0.5`"),
     ),
 )
 
@@ -227,11 +227,11 @@ RANGES = (
     ),
     one(
         "overfull tank", "fill: 0.5", "fill: 1.0",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`1`", "such as `0.5`"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.995", "`1`", "such as `0.5`"),
     ),
     one(
         "fill in per cent", "fill: 0.5", "fill: 50",
-        (24, "tank.fill", "must be a number from 0.02 to 0.98", "`50`", "such as `0.5`, or is it meant in `%`?"),
+        (24, "tank.fill", "must be a number from 0.02 to 0.995", "`50`", "such as `0.5`, or is it meant in `%`?"),
     ),
     one(
         "tolerance of zero", "1.0e-4", "0",

@@ -335,7 +335,7 @@ def test_replace_of_a_tank_alone() -> None:
         ("braking.torque", True, "braking.torque: must be a torque"),
         ("braking.torque", float("nan"), "braking.torque: must be a torque"),
         ("braking.torq", 5.0, "braking.torq: is not a key of `braking`"),
-        ("tank.fill", 2.0, "tank.fill: must be a number from 0.02 to 0.98"),
+        ("tank.fill", 2.0, "tank.fill: must be a number from 0.02 to 0.995"),
         ("track.domain.length", 15.0, "track.domain.length: must hold the wheels"),
         ("tank.modes", 2, "tank.modes: must not be set where"),
     ],

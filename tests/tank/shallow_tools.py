@@ -72,20 +72,15 @@ class Moving:
     liquid: ShallowLiquid
     area: np.ndarray
     flow: np.ndarray
+    depth: np.ndarray
 
     def advance(self, acceleration: float, duration: float) -> np.ndarray:
         work, sums = np.zeros((WORK_ROWS, self.liquid.cells + 1)), np.zeros(4)
-        assert liquid_evolve(
-            self.liquid, self.area, self.flow, depths(self.liquid, self.area), acceleration, duration, work, sums
-        )
+        assert liquid_evolve(self.liquid, self.area, self.flow, self.depth, acceleration, duration, work, sums)
         assert np.all(np.isfinite(self.area))
         assert np.all(np.isfinite(self.flow))
         assert self.area.min() >= 0.0
         return sums
-
-    @property
-    def depth(self) -> np.ndarray:
-        return depths(self.liquid, self.area)
 
     @property
     def energy(self) -> float:
@@ -94,7 +89,20 @@ class Moving:
 
 def moving(liquid, depth=None) -> Moving:
     """At rest with the given depths; level without."""
-    return Moving(liquid, areas(liquid, liquid.still_depth if depth is None else depth), np.zeros(liquid.cells))
+    area = areas(liquid, liquid.still_depth if depth is None else depth)
+    return Moving(liquid, area, np.zeros(liquid.cells), depths(liquid, area))
+
+
+def still_tilted(liquid, slope) -> Moving:
+    """At rest with the whole liquid below the plane `level + slope x`, cut off by roof and bottom."""
+    full, volume = liquid.table.full_area, liquid.cells * areas(liquid, liquid.still_depth)[0]
+    reach = abs(slope) * LENGTH + liquid.table.roof
+
+    def cut(level):
+        return np.minimum(areas(liquid, level + slope * places(liquid)), full)
+
+    area = cut(brentq(lambda level: cut(level).sum() - volume, -reach, reach, xtol=1e-15))
+    return Moving(liquid, area, np.zeros(liquid.cells), depths(liquid, area))
 
 
 def dam(liquid, behind, before):

@@ -224,3 +224,11 @@ def test_rows_lie_at_the_interval_and_at_the_end():
         excite(cylinder(), Deceleration.ramped(1.0), 0.0)
     with pytest.raises(ValueError, match="zero throughout"):
         excite(cylinder(), Deceleration.table([(50.0, 0.0), (60.0, 1.0)]), 40.0)
+
+
+def test_the_largest_head_under_the_roof_goes_with_the_history():
+    """A level tank has none; one whose front runs full under 1 g stands under metres of pressure there."""
+    calm = excite(cylinder(liquid=Liquid(model="shallow-water", density=998.2)), Deceleration.ramped(0.1, 5.0), 10.0)
+    assert calm.largest_head == 0.0
+    hard = excite(cylinder(0.9, liquid=Liquid(model="shallow-water", density=998.2)), Deceleration.ramped(9.81), 5.0)
+    assert hard.largest_head > 2.0
