@@ -102,6 +102,6 @@ def _push_of_cells(stop: Problem, end: State) -> Array:
     count = int(CELL_PERIODS * CELL_SAMPLES)
     lengths = np.full(count, period / CELL_SAMPLES)
     leaning = np.full(count, liquid.gravity * pitch)
-    rows, work = np.zeros((count, 5)), np.zeros((WORK_ROWS, liquid.cells + 1))
+    rows, work = np.zeros((count, 6)), np.zeros((WORK_ROWS, liquid.cells + 1))
     done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, leaning, work, np.zeros(4), rows)
     return np.asarray(rows[:done, 0] / lengths[:done] - liquid.mass * liquid.gravity * pitch, dtype=np.float64)
