@@ -209,7 +209,7 @@ class _SteadyFile(io.RawIOBase):
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
         self._place = self._end = 0
-        self.trouble: OSError | None = None
+        self.trouble: OSError | KeyboardInterrupt | None = None
 
     def readable(self) -> bool:
         return True
@@ -257,7 +257,7 @@ class _SteadyFile(io.RawIOBase):
         try:
             self._file.seek(self._place)
             action()
-        except OSError as error:
+        except (OSError, KeyboardInterrupt) as error:  # neither may pass through HDF5
             self.trouble = error
 
 
