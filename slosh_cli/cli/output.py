@@ -46,8 +46,12 @@ def show(*renderables: "RenderableType") -> None:
     from rich.console import Console
 
     console = Console(highlight=False)
-    with console.capture() as capture:
-        console.print(*renderables, sep="\n")
+    try:
+        with console.capture() as capture:
+            console.print(*renderables, sep="\n")
+    except OSError as error:  # rich looks whether stdout is still there
+        refused(error)
+        return
     _to_stdout(capture.get())
 
 
