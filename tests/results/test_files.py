@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from slosh_cli.results.files import FileError, replacing, staging
+from slosh_cli.results.files import FileError, replacing, staging, try_targets
 
 
 class HalfwayError(Exception):
@@ -112,3 +112,38 @@ def test_staging_into_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "run").write_text("")
     with pytest.raises(FileError, match="cannot write"), staging(tmp_path / "run"):
         pass
+
+
+def test_a_folder_in_place_of_a_file_stops_the_stage_before_anything_moves(tmp_path: Path) -> None:
+    (tmp_path / "b").mkdir()
+    (tmp_path / "a").write_text("old")
+
+    def write() -> None:
+        with staging(tmp_path, owned=["a", "c"]) as stage:
+            for name in ("a", "b"):
+                (stage / name).write_text("new")
+
+    with pytest.raises(FileError, match="there is a folder of that name"):
+        write()
+    assert (tmp_path / "a").read_text() == "old"
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a", "b"]
+
+
+def test_trying_targets_leaves_nothing_but_takes_away_what_killed_processes_left(tmp_path: Path) -> None:
+    abandoned, fresh = tmp_path / ".run.h5.0123abcd.part", tmp_path / ".summary.csv.0123abcd.part"
+    stage, own = tmp_path / ".0123abcd.part", tmp_path / "notes.part"
+    stage.mkdir()
+    for file in (abandoned, fresh, own, stage / "run.h5"):
+        file.write_text("half")
+    for file in (abandoned, own, stage):
+        os.utime(file, (1e9, 1e9))
+    try_targets(tmp_path, ["run.h5"])
+    assert sorted(file.name for file in tmp_path.iterdir()) == [fresh.name, own.name]
+    try_targets(tmp_path / "new" / "deep", ["run.h5"])
+    assert not (tmp_path / "new").exists()
+
+
+def test_targets_below_a_file_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="is not a folder"):
+        try_targets(tmp_path / "file" / "run", ["run.h5"])
