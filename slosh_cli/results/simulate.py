@@ -70,7 +70,7 @@ _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     RINGING: (
         Status.FAILED,
         "wheels left the rail, and the track hardly damps what their landings put into it: the waves run to and fro in "
-        "the rail and go on shaking the wheels, and the braking distance hangs on waves too short for any step. Give "
+        "the rail and go on shaking the wheels, and the braking distance hangs on waves too short for the steps. Give "
         "the track its damping (track.foundation.damping, 4.9 kN s/m^2 in the packaged scenarios)",
     ),
 }

@@ -6,17 +6,18 @@ import math
 
 from slosh_cli.compiled import inner_kernel, kernel, part_kernel
 from slosh_cli.solver.cells import LOSS, START_FORCE, START_MOMENT, cells_rise, settle_cells
-from slosh_cli.solver.contacts import brake_holds
 from slosh_cli.solver.events import (
     BRAKE_EVENT,
     EVENT_COUNT,
-    EVENT_TOLERANCE,
     FLOOR_EVENT,
     PITCH_EVENT,
+    SHORTEST_STEP,
     STOP_EVENT,
     event_values,
     reached,
     shorter_step,
+    switch_at_start,
+    wheel_holds,
 )
 from slosh_cli.solver.ledger import BRAKE, SLOPE, SLOSH_DAMPING, balance
 from slosh_cli.solver.method import DIAGONAL, GAMMA, OUTER
@@ -49,15 +50,11 @@ from slosh_cli.wagon.coordinates import COORDINATES, WHEEL_SPIN, WHEELS
 # why the loop returns
 RUNNING, STOPPED, TIME_LIMIT, PITCH_LIMIT, UNSOLVED, STALLED_EVENTS, ROWS_FULL, NOT_FINITE = range(8)
 
-SHORTEST_STEP = 1e-9
-"""Steps do not go below this, s."""
 MOST_STALLED = 200
 """Events in a row, each within two of the shortest steps of the last, that end a run."""
 GROWTH = 4.0
 INTEGRAL, PROPORTIONAL = 0.7 / 3.0, 0.3 / 3.0
 """Exponents of the step control for a local error of order 3: K. Gustafsson, ACM TOMS 17 (1991) 533-554."""
-TORQUE_RATE_OVER = 1e-6
-"""The rate of the brakes' torque is its change over this time, s."""
 RESTART_STEP = 1e-3
 """First step after a discontinuity, s; error control takes it from there."""
 
@@ -168,16 +165,6 @@ def _record(model, state, rows, step):
 
 
 @inner_kernel
-def _holds(model, state, wheel):
-    """Whether the brake holds a wheel at rest from now on; forces depend on places and speeds, so wheels do not wait
-    for each other."""
-    time, phase = state.clock[TIME], state.counts[PHASE]
-    torque = brake_torque(model.brake, time, phase)
-    rate = (brake_torque(model.brake, time + TORQUE_RATE_OVER, phase) - torque) / TORQUE_RATE_OVER
-    return brake_holds(model, state.start, wheel, torque, rate, EVENT_TOLERANCE)
-
-
-@inner_kernel
 def _apply_events(model, state, before, after):
     """Switch what the reached events switch; returns (something switched, outcome)."""
     switched, outcome = False, RUNNING
@@ -188,27 +175,12 @@ def _apply_events(model, state, before, after):
         if k < FLOOR_EVENT:
             wheel = k - BRAKE_EVENT
             state.start.v[WHEEL_SPIN + wheel] = 0.0
-            state.locked[wheel] = _holds(model, state, wheel)
+            state.locked[wheel] = wheel_holds(model, state, wheel)
         elif k == STOP_EVENT:
             outcome = STOPPED
         elif k == PITCH_EVENT:
             outcome = PITCH_LIMIT
     return switched, outcome
-
-
-@inner_kernel
-def _switch_at_start(model, state, before, after, step):
-    """Switch wheels whose event is now: it lies no further than the shortest step from the start of the one in hand."""
-    switched = False
-    for wheel in range(WHEELS):
-        k = BRAKE_EVENT + wheel
-        if after[k] < -EVENT_TOLERANCE and step * before[k] <= 2.0 * SHORTEST_STEP * (before[k] - after[k]):
-            holds = _holds(model, state, wheel)
-            if holds != state.locked[wheel]:
-                switched = True
-                state.locked[wheel] = holds
-                state.start.v[WHEEL_SPIN + wheel] = 0.0
-    return switched
 
 
 @inner_kernel
@@ -249,7 +221,7 @@ def _onset(model, state):
         state.clock[ONSET_POSITION] = state.start.q[0]
     state.counts[PHASE] += 1
     for wheel in range(WHEELS):
-        state.locked[wheel] = state.locked[wheel] and _holds(model, state, wheel)
+        state.locked[wheel] = state.locked[wheel] and wheel_holds(model, state, wheel)
 
 
 @inner_kernel
@@ -347,7 +319,7 @@ def advance(model, scratch, state, rows, most_steps):
                 tries += 1
                 state.counts[REJECTED] += 1
                 if shorter < 2.0 * SHORTEST_STEP:
-                    switched = _switch_at_start(model, state, state.values_before, state.values, step)
+                    switched = switch_at_start(model, state, state.values_before, state.values, step)
                 # a straight line may creep towards a bent event from beyond it: halving does not
                 step = max(shorter if tries < 3 else min(shorter, 0.5 * step), 2.0 * SHORTEST_STEP)
         if switched:

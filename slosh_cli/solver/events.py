@@ -8,8 +8,11 @@ landing are no events: the force of a contact rises from zero with the power 3/2
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.solver.contacts import brake_holds
+from slosh_cli.solver.state import PHASE, TIME
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.track.vectors import fill
+from slosh_cli.wagon.brake import brake_torque
 from slosh_cli.wagon.coordinates import BOGIE_PITCH, CAR_PITCH, WHEEL_SPIN, WHEELS
 
 # places of the event values: four of the brakes, then these
@@ -17,6 +20,10 @@ BRAKE_EVENT, FLOOR_EVENT, STOP_EVENT, PITCH_EVENT = 0, 4, 5, 6
 EVENT_COUNT = 7
 EVENT_TOLERANCE = 1e-6
 """An event is reached when its value is this close to zero (m/s, or relative to torque, pitch limit)."""
+SHORTEST_STEP = 1e-9
+"""Steps do not go below this, s."""
+TORQUE_RATE_OVER = 1e-6
+"""The rate of the brakes' torque is its change over this time, s."""
 LARGEST_PITCH = 0.1
 """Small-angle kinematics say nothing beyond this pitch, rad (model section 9)."""
 
@@ -65,3 +72,30 @@ def reached(before, after, k):
     if k < FLOOR_EVENT and after[k] < -EVENT_TOLERANCE:
         return True
     return before[k] > EVENT_TOLERANCE and after[k] <= EVENT_TOLERANCE
+
+
+@inner_kernel
+def wheel_holds(model, state, wheel):
+    """Whether the brake holds a wheel at rest from now on.
+
+    Forces depend on places and speeds, not on accelerations: what one wheel does does not change it for another.
+    """
+    time, phase = state.clock[TIME], state.counts[PHASE]
+    torque = brake_torque(model.brake, time, phase)
+    rate = (brake_torque(model.brake, time + TORQUE_RATE_OVER, phase) - torque) / TORQUE_RATE_OVER
+    return brake_holds(model, state.start, wheel, torque, rate, EVENT_TOLERANCE)
+
+
+@inner_kernel
+def switch_at_start(model, state, before, after, step):
+    """Switch wheels whose event is now: it lies no further than the shortest step from the start of the one in hand."""
+    switched = False
+    for wheel in range(WHEELS):
+        k = BRAKE_EVENT + wheel
+        if after[k] < -EVENT_TOLERANCE and step * before[k] <= 2.0 * SHORTEST_STEP * (before[k] - after[k]):
+            holds = wheel_holds(model, state, wheel)
+            if holds != state.locked[wheel]:
+                switched = True
+                state.locked[wheel] = holds
+                state.start.v[WHEEL_SPIN + wheel] = 0.0
+    return switched

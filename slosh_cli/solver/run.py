@@ -104,8 +104,8 @@ def _is_ringing(problem: Problem, state: State) -> bool:
     """Whether waves of landing wheels stayed in the rail until steps too long for them took their energy.
 
     Without damping they run to and fro between the domain's ends, ever shorter, and shake the wheels that made them.
-    No step is short enough for the shortest ones: an L-stable method takes their energy, so that the ledger misses it,
-    and the distance goes on changing with the tolerance and with every hair's breadth of the speed.
+    An L-stable method takes the energy of those too short for its steps, so that the ledger misses it, and the distance
+    goes on changing with the tolerance (seen: with a million steps still as much as with ten thousand).
     """
     missing = -float(state.residual[1])
     absorbed = float(state.losses[FOUNDATION] / state.clock[INITIAL_KINETIC])
