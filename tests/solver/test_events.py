@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from slosh_cli.solver import advance as loop
+from slosh_cli.solver import events
 from slosh_cli.solver.contacts import brake_holds
 from slosh_cli.solver.events import EVENT_COUNT, EVENT_TOLERANCE, event_values, shorter_step
 from slosh_cli.solver.method import GAMMA
@@ -131,6 +132,22 @@ def test_brake_without_torque_lets_go(held_wheel):
         stop.start.creep[0] = creep
         event_values.py_func(stop.model, stop.start, np.array([True, False, False, False]), 0.0, values)
         assert values[0] < -EVENT_TOLERANCE
+
+
+@pytest.mark.parametrize(("share", "held"), [(1.1, True), (0.9, False), (0.0, False)])
+def test_torque_that_jumps_holds_a_locked_wheel_or_lets_it_go(held_wheel, monkeypatch, share, held):
+    """At a break of the torque the wheel asks for `f R`: it stays locked where the torque bears that afterwards."""
+    stop = held_wheel(0.0, 0.0)
+    model = stop.model
+    state = new_state(stop.start, stop.cells, EVENT_COUNT, 1e-3)
+    state.locked[0], state.counts[PHASE] = True, 1
+    after = {1: 2.0 * model.brake.torque, 2: share * model.brake.torque}
+    monkeypatch.setattr(events, "brake_torque", lambda brake, time, phase: after[phase])
+    monkeypatch.setattr(events, "brake_holds", brake_holds.py_func)
+    monkeypatch.setattr(loop, "wheel_holds", events.wheel_holds.py_func)
+    loop._onset.py_func(model, state)
+    assert state.locked.tolist() == [held, False, False, False]
+    assert state.counts[PHASE] == 2
 
 
 def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel, monkeypatch):
