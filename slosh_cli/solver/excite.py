@@ -245,7 +245,7 @@ def _settled_history(liquid: ModalLiquid, deceleration: Deceleration, time: Arra
 def _excite_cells(
     tank: ExcitedTank, deceleration: Deceleration, time: Array, given: Array, largest: float
 ) -> Excitation:
-    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, WHOLE)
+    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, WHOLE, columns=True)
     borders = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
     ends = _with_corners(deceleration, np.union1d(time, borders))
     lengths = np.diff(ends)

@@ -1,11 +1,11 @@
 """Where the section runs full up to a wall, the liquid stands still: nothing but pressure passes.
 
 A slot above the roof (`section_table`) stores liquid under a head however long the head stands, and the surface
-elsewhere sinks for it; pressure waves in it ring on. So where the still liquid, too, would stand under the roof, the
-cells from the deeper wall on are taken for what they are as soon as they are full: a column that neither moves nor
-gives way, hydrostatic from the first open surface on. That surface is reflected by the column as by a wall. The column
-takes in a cell that has run full, whose momentum the walls bear; it lets one go where its pressure would turn into
-tension. Both only take energy. Everywhere else the slot carries what strikes the roof for a moment.
+elsewhere sinks for it; pressure waves in it ring on. So in a tank that is more than `NEARLY_FULL` the full cells from
+the deeper wall on are taken for what they are: a column that neither moves nor gives way, hydrostatic from the first
+open surface on. That surface is reflected by the column as by a wall. The column takes in the next cell once that has
+run full, and the walls bear its momentum; it lets one go where its pressure would turn into tension. Both only take
+energy. Everywhere else the slot carries what strikes the roof for a moment.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section_table import depth_of, full_level, section_at
+from slosh_cli.tank.section_table import depth_of, full_level
 
-ITERATIONS = 60
-"""Most steps of the search for the still plane; Newton's method, kept between bounds, needs five."""
+NEARLY_FULL = 0.6
+"""Tanks filled less than that (depth over height) leave what strikes the roof to the slot alone."""
 ROOM = 0.02
 """What the slot held as a column formed goes back to the open surface, this part of the room in its cells at a time."""
 FULL = 1.0 - 1e-13
@@ -24,80 +24,13 @@ FULL = 1.0 - 1e-13
 
 
 @kernel
-def _closed_section(table, depth):
-    """Area (m^2) and surface width (m) of the section itself, closed where it is full."""
-    if depth >= full_level(table):
-        return table.full_area, 0.0
-    if depth <= 0.0:
-        return 0.0, 0.0
-    area, _, width = section_at(table, depth)
-    return area, width
-
-
-@kernel
-def _still_level(liquid, area, first, end, tilt):
-    """Depth (m) in the middle of the cells `first` to `end` of the plane that holds their liquid.
-
-    Negative where that plane does not reach the roof, or where the cells have no room for their liquid below the roof.
-    """
-    table = liquid.table
-    count, lid, volume = end - first, full_level(table), 0.0
-    for i in range(first, end):
-        volume += area[i]
-    if volume >= count * table.full_area:
-        return -1.0
-    level = depth_of(table, volume / count)
-    reach = abs(tilt) * (count - 1)
-    if level + reach <= lid:
-        return -1.0
-    low, high = level - reach, level + reach
-    for _ in range(ITERATIONS):
-        miss, slope = -volume, 0.0
-        for i in range(first, end):
-            held, width = _closed_section(table, level - tilt * (i - 0.5 * (first + end - 1)))
-            miss += held
-            slope += width
-        if miss > 0.0:
-            high = level
-        else:
-            low = level
-        following = level - miss / slope if slope > 0.0 else low
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        change = following - level
-        level = following
-        if abs(change) <= 1e-13 * table.roof:
-            break
-    return level if level + 0.5 * reach > lid else -1.0
-
-
-@kernel
-def still_plane(liquid, area, acceleration, plane):
-    """Depths (cells,) m of the still liquid's plane under constant `acceleration` (m/s^2), into `plane`.
-
-    Each section between closed bulkheads has its own; -1 where it nowhere meets the roof. Returns True when one does.
-    """
-    tilt = acceleration * liquid.spacing / liquid.gravity
-    met, first = False, 0
-    for end in range(1, liquid.cells + 1):
-        if end < liquid.cells and liquid.loss[end] < math.inf:
-            continue
-        level = _still_level(liquid, area, first, end, tilt) if tilt != 0.0 else -1.0
-        met = met or level >= 0.0
-        for i in range(first, end):
-            plane[i] = level - tilt * (i - 0.5 * (first + end - 1)) if level >= 0.0 else -1.0
-        first = end
-    return met
-
-
-@kernel
-def _stand_from(liquid, area, depth, plane, wall, beyond, tilt, still):
+def _stand_from(liquid, area, depth, wall, beyond, tilt, still):
     """The column at the deeper `wall` of the cells up to before `beyond`."""
     table = liquid.table
     lid, full = full_level(table), table.full_area
     way = 1 if beyond > wall else -1
     end = wall
-    while end != beyond and plane[end] > lid and area[end] >= FULL * full:
+    while end != beyond and area[end] >= FULL * full:
         end += way
     if end in (beyond, wall):
         return
@@ -126,26 +59,26 @@ def _stand_from(liquid, area, depth, plane, wall, beyond, tilt, still):
 
 
 @kernel
-def stand_still(liquid, area, depth, plane, met, acceleration, still):
-    """Mark in `still` (cells,) the cells of full columns and set their depth to the pressure's.
+def stand_still(liquid, area, depth, acceleration, still):
+    """Mark in `still` (cells,) the cells of full columns and set their depth to the pressure's; True where one stands.
 
-    `plane` and `met` are `still_plane`'s.
+    Each section between closed bulkheads may have one, at its deeper wall.
     """
     for i in range(liquid.cells):
         still[i] = 0.0
-    if not met:
-        return
+    if not liquid.columns or acceleration == 0.0 or liquid.still_depth < NEARLY_FULL * liquid.table.roof:
+        return False
     tilt = acceleration * liquid.spacing / liquid.gravity
     first = 0
     for end in range(1, liquid.cells + 1):
         if end < liquid.cells and liquid.loss[end] < math.inf:
             continue
-        if plane[first] > -1.0 or plane[end - 1] > -1.0:
-            if tilt > 0.0:
-                _stand_from(liquid, area, depth, plane, first, end, tilt, still)
-            else:
-                _stand_from(liquid, area, depth, plane, end - 1, first - 1, -tilt, still)
+        if tilt > 0.0:
+            _stand_from(liquid, area, depth, first, end, tilt, still)
+        else:
+            _stand_from(liquid, area, depth, end - 1, first - 1, -tilt, still)
         first = end
+    return True
 
 
 @kernel

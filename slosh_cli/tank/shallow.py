@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.roof import stand_still, still_plane, stop_columns
+from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import fluxes
 
@@ -26,7 +26,7 @@ MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
 SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
-WORK_ROWS = 19
+WORK_ROWS = 18
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
 FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
@@ -38,7 +38,8 @@ class ShallowLiquid(NamedTuple):
 
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
     liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
-    face, zero where there is none.
+    face, zero where there is none and infinite where it is closed. `columns`: cells that run full up to a wall stand
+    still (`roof`).
     """
 
     cells: int
@@ -50,6 +51,7 @@ class ShallowLiquid(NamedTuple):
     still_depth: float
     loss: Array
     table: SectionTable
+    columns: bool = True
 
 
 @kernel
@@ -144,12 +146,11 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
     mass, momentum, source, push = work[2], work[3], work[4], work[5]
     mass_2, momentum_2, source_2, push_2 = work[6], work[7], work[8], work[9]
     area_1, flow_1, depth_1, area_2, flow_2, kept = work[10], work[11], work[12], work[13], work[14], work[15]
-    still, still_1, plane = work[16], work[17], work[18]
+    still, still_1 = work[16], work[17]
     for i in range(liquid.cells):
         if depth[i] >= liquid.table.depth[liquid.table.depth.size - 1]:  # it may be a column's, under another tilt
             depth[i] = depth_of(liquid.table, area[i])
-    met = still_plane(liquid, area, acceleration, plane)
-    stand_still(liquid, area, depth, plane, met, acceleration, still)
+    stand_still(liquid, area, depth, acceleration, still)
     remaining = duration
     while remaining > 0.0:
         speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
@@ -161,7 +162,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             share = step / limit
             _euler(liquid, area, flow, still, mass, momentum, source, step, share, kept, area_1, flow_1)
             liquid_depths(liquid, area_1, depth_1)
-            stand_still(liquid, area_1, depth_1, plane, met, acceleration, still_1)
+            stand_still(liquid, area_1, depth_1, acceleration, still_1)
             speed = fluxes(
                 liquid, area_1, flow_1, depth_1, still_1, acceleration, work, mass_2, momentum_2, source_2, push_2
             )
@@ -177,8 +178,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             flow[i] = 0.5 * (flow[i] + flow_2[i])
         _calm_films(liquid, area, flow, share)
         liquid_depths(liquid, area, depth)
-        stand_still(liquid, area, depth, plane, met, acceleration, still)
-        if met:
+        if stand_still(liquid, area, depth, acceleration, still):
             _stop(liquid, stop_columns(liquid, flow, still, step), sums)
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0

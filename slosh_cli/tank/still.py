@@ -59,8 +59,14 @@ class FlowingTank(LoadedTank, Protocol):
         """What the tank holds."""
 
 
-def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[ShallowLiquid, CellColumns]:
-    """Constants for the `share` (0.5: one rail's half) of the tank's liquid, and its cells, level and at rest."""
+def shallow_liquid(
+    tank: FlowingTank, gravity: float, share: float, columns: bool = False
+) -> tuple[ShallowLiquid, CellColumns]:
+    """Constants for the `share` (0.5: one rail's half) of the tank's liquid, and its cells, level and at rest.
+
+    `columns` that stand still where the tank runs full follow its acceleration at once, as only a tank that is moved as
+    prescribed allows: a wagon coupled to them step by step would swing up against their mass.
+    """
     section, load = section_of(tank), frozen_load(tank)
     depth, cells = tank.fill * section.height, tank.liquid.cells
     liquid = ShallowLiquid(
@@ -73,6 +79,7 @@ def shallow_liquid(tank: FlowingTank, gravity: float, share: float) -> tuple[Sha
         still_depth=depth,
         loss=_baffle_losses(tank),
         table=section_table(section, gravity, tank.liquid.slot_speed),
+        columns=columns,
     )
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
 
