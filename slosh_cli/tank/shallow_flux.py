@@ -15,6 +15,8 @@ from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
 
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
+STILL = 1e-2
+"""A liquid slower than this part of its waves' speed is more and more taken for still."""
 STEEPENED, MILD = 1.2, 0.5
 """Slopes may be this much steeper than minmod's in waves whose slope, drawn out over the whole tank, would change depth
 and speed by much less than this part of the depth and of the waves' speed: minmod wears small waves down, but is the
@@ -85,11 +87,17 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
         if wet:
             slope_depth[i] = _limited(surface_b, surface_a, mild * depth[i])
             slope_speed[i] = _limited(speed_b, speed_a, mild * math.sqrt(liquid.gravity * depth[i]))
-        # no cell's surface reaches through the roof: the fast waves of a full section begin where its mean is full
+        if abs(depth[i] - roof) < 0.5 * abs(slope_depth[i] - tilt):  # the surface meets the roof inside the cell
+            slope_depth[i] = 0.0
+        slope_depth[i] -= tilt
+        # in a flow no cell's surface reaches through the roof: fast waves begin where a cell's mean is full; so the
+        # force jumps at no acceleration. A still liquid's surface may
         room = 2.0 * max(abs(depth[i] - roof) - LEDGE * roof, 0.0)
-        # nor does either end of a cell lie below the bed
-        room = min(room, 2.0 * depth[i])
-        slope_depth[i] = min(max(slope_depth[i] - tilt, -room), room)
+        if abs(slope_depth[i]) > room and area[i] > dry:
+            flowing = min((flow[i] / area[i]) ** 2 / (STILL * STILL * liquid.gravity * depth[i]), 1.0)
+            slope_depth[i] += flowing * (math.copysign(room, slope_depth[i]) - slope_depth[i])
+        # neither end of a cell lies below the bed
+        slope_depth[i] = min(max(slope_depth[i], -2.0 * depth[i]), 2.0 * depth[i])
 
 
 @kernel
