@@ -6,7 +6,6 @@ none.
 
 import numpy as np
 import pytest
-
 from shallow_tools import BOX, areas, liquid_in, moving, places
 
 MOMENT = 1e-6
