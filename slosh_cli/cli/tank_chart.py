@@ -22,7 +22,7 @@ TABLE: Final = "fill_chart.csv"
 _FILES: Final = (TABLE, "fill_chart.png", "fill_chart.svg")
 ALL: Final = "0.05:0.95:0.05"
 """Fillings that are shown when none are asked for."""
-LEAST, MOST = 0.02, 0.98
+LEAST, MOST = 0.02, 0.995
 """Fillings that the finite elements can represent."""
 
 

@@ -15,7 +15,7 @@ from slosh_cli.scenario.plain_data import plain_data
 if TYPE_CHECKING:
     from slosh_cli.study.plan import Study
 
-RESULT_VERSION: Final = 2
+RESULT_VERSION: Final = 3
 """Raise it whenever the same scenario would give another answer: journals then compute every stop anew."""
 
 _SAYS_NOTHING: Final = ("name", "description", "output")
