@@ -42,10 +42,6 @@ Array = NDArray[np.float64]
 WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
 
-STANDING = 1e-3
-"""Circumferential speed (m/s) below which a wheel under a moving wagon counts as locked in a row of the history."""
-LONGEST_INTERVAL = 0.05
-"""Time between rows (s) up to which they tell from what speed a wheel locks: to 0.2 m/s of a hard stop."""
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
@@ -169,19 +165,7 @@ def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
         residual=float(run.state.residual[2]),
         residual_cause=residual_cause(scenario, lifts),
         locked=_per_wheel(run.state.locked_time),
-        lock_speed=_lock_speed(stop, run),
     )
-
-
-def _lock_speed(stop: Problem, run: Run) -> float | None:
-    """Speed (m/s) of the wagon in the first row in which a wheel stands; None where rows are rare or show none."""
-    if stop.model.control.interval > LONGEST_INTERVAL:
-        return None
-    rows, radius = run.rows, stop.model.wagon.wheel_radius
-    speed = rows[:, record.SPEED_COLUMN + POSITION]
-    spins = rows[:, record.SPEED_COLUMN + WHEEL_SPIN :][:, : len(WHEELS)]
-    standing = (np.abs(radius * spins) < STANDING).any(axis=1) & (speed > STANDING)
-    return float(speed[standing.argmax()]) if standing.any() else None
 
 
 def _final_energy(run: Run) -> dict[str, float]:

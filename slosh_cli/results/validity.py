@@ -46,7 +46,7 @@ class Extent:
     """What the verdicts on a run as a whole look at.
 
     Largest wheel unloading, wheel lift-offs, whether the run ended at the limit of small angles, largest ledger
-    residual and what to do about it, seconds that each wheel was locked and the wagon's speed (m/s) at the first lock.
+    residual and what to do about it, seconds that each wheel was locked.
     """
 
     unloading: float
@@ -55,7 +55,6 @@ class Extent:
     residual: float
     residual_cause: str
     locked: Sequence[float]
-    lock_speed: float | None
 
 
 def checks(extent: Extent) -> tuple[Check, ...]:
@@ -98,10 +97,9 @@ def _checks(x: Extent) -> Iterator[Check]:
 
 
 def _locked_words(x: Extent) -> str:
-    """Which wheels slid, for how long and from what speed."""
+    """Which wheels slid, and for how long."""
     wheels = ", ".join(f"wheel {i} for {seconds:.2f} s" for i, seconds in enumerate(x.locked, 1) if seconds > 0.0)
-    since = "" if x.lock_speed is None else f", the first from {3.6 * x.lock_speed:.0f} km/h on"
-    return f"Locked wheels slide on the rail and wear flat: {wheels}{since}."
+    return f"Locked wheels slide on the rail and wear flat: {wheels}."
 
 
 def warnings_of(verdicts: Sequence[Check]) -> list[str]:

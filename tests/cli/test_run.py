@@ -294,7 +294,7 @@ def test_what_was_set_is_in_the_folders_name(slosh: Slosh, solver: Solver, tmp_p
     slosh("run", PAPER, "--no-figures")
     slosh("run", PAPER, "--no-figures", "--set", "tank.liquid.model=rigid", "--set", "braking.torque=12 kN m")
     slosh("run", PAPER, "--no-figures", "--set", "braking.torque=12 kN m", "--set", "tank.liquid.model=rigid")
-    slosh("run", PAPER, "--no-figures", "--set", "name=mine", "--set", "tank.fill=0.4")
+    slosh("run", PAPER, "--no-figures", "--set", "name=mine", "--set", "tank.bottom_height=1.2 m")
     assert names(tmp_path / "outputs") == {
         "paper-80-liquid", "paper-80-liquid-braking.torque=12-kN-m-tank.liquid.model=rigid", "mine",
     }  # fmt: skip
@@ -304,7 +304,9 @@ def test_many_settings_make_no_endless_name(slosh: Slosh, solver: Solver, tmp_pa
     many = [f"solver.{key}" for key in ("tolerance=1e-3", "time_limit=500 s")] + [f"description={'x' * 300}"]
     many += ["wagon.pivot_spacing=10.5 m", "track.domain.length=40 m", "contact.adhesion=wet", "braking.onset=0.75 s"]
     for fill in (0.4, 0.5):
-        settings = [word for text in [*many, f"tank.fill={fill}"] for word in ("--set", text)]
+        settings = [
+            word for text in [*many, "tank.coefficients=computed", f"tank.fill={fill}"] for word in ("--set", text)
+        ]
         assert slosh("run", PAPER, "--no-figures", *settings).code == ExitCode.DONE
     one, two = names(tmp_path / "outputs")
     assert max(len(one), len(two)) <= 100

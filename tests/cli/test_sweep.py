@@ -370,7 +370,7 @@ def _fails(*_: Any, **__: Any) -> None:
 @pytest.mark.parametrize(
     ("writer", "lost"),
     [
-        ("study.table.write_study_table", {"braking_distance.csv"}),
+        ("results.tables.write_rows", {"braking_distance.csv"}),
         ("report.study_figures.draw_study", {"braking_distance.png", "braking_distance.svg"}),
     ],
 )
@@ -419,7 +419,7 @@ def test_another_study_of_the_same_name_gets_a_folder_of_its_own(
     assert outcome.code == ExitCode.DONE
     assert "outputs/paper-wagon holds the results of other settings; these go to outputs/paper-wagon-2" in outcome.err
     slosh("sweep", "--torque", "5")  # a part of it would take rows away from the first table
-    slosh("sweep", "--torque", "5,10", "--vary", "tank.fill=0.4,0.5")
+    slosh("sweep", "--torque", "5,10", "--vary", "tank.bottom_height=1.2,1.3 m")
     slosh("sweep", "--torque", "5,10", "--set", "contact.adhesion=wet")
     assert (outputs / "paper-wagon" / "braking_distance.csv").read_bytes() == first
     assert names(outputs) == {

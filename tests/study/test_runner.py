@@ -112,7 +112,7 @@ def test_a_combination_that_is_no_sound_scenario_is_a_failed_row(solver: QuickSo
     found = table(study, tmp_path)
     assert [row["status"] for row in found] == ["stopped", "stopped", "failed", "stopped"]
     assert "pivot" in str(found[2]["reason"]) or "domain" in str(found[2]["reason"])
-    assert [row["wagon.pivot_spacing_m"] for row in found] == [10, 10, 40, 40]
+    assert [row["wagon_pivot_spacing_m"] for row in found] == [10, 10, 40, 40]
 
 
 def test_stops_run_at_the_same_time_and_only_a_few_are_in_hand(solver: QuickSolver, tmp_path: Path) -> None:
