@@ -166,7 +166,7 @@ def test_a_full_disk_does_not_take_the_answer_of_a_run(tmp_path: Path, largest: 
 
 
 def test_a_full_disk_does_not_take_the_rows_of_a_sweep_with_histories(tmp_path: Path) -> None:
-    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"), LARGEST_FILE=60_000)
+    code, out, err = run_slosh(tmp_path, *sweep(4, "--histories", "--json"), LARGEST_FILE=100_000)
     assert code == 2, err
     assert "Traceback" not in err
     answer = json.loads(out)
