@@ -117,12 +117,13 @@ def judge(
     """
     from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
     from slosh_cli.results.recommendation import recommend
+    from slosh_cli.tank.roof import NEARLY_FULL
 
     tank = scenario.tank
     if tank.liquid.model == "rigid":
         return (), None
     advice = recommend(tank, found.largest_deceleration)
-    motion = Motion(abs(found.max_surface), found.largest_head)
+    motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=scenario.tank.fill < NEARLY_FULL)
     return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
 
 

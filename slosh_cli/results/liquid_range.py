@@ -14,15 +14,18 @@ from slosh_cli.tank.still import frequency_excess
 
 FREQUENCY_LIMIT = 0.05
 """Shallow water is used where its first frequency is this close to potential flow's."""
+SLOT_LIMIT = 0.1
+"""A slot that may hold more than this part of the room above the liquid changes the surface elsewhere."""
 
 
 @dataclass(frozen=True)
 class Motion:
     """How far a liquid moved: largest change of its level at an end wall, up or down, and largest head of pressure
-    under the roof, both m and not negative."""
+    under the roof, both m and not negative; whether the slot above the roof alone carried that head (`tank.roof`)."""
 
     surface: float
     head: float = 0.0
+    slot_alone: bool = True
 
 
 def room_and_depth(tank: Tank) -> tuple[float, float]:
@@ -107,3 +110,25 @@ def _motion_checks(tank: Tank, motion: Motion, advice: str) -> Iterator[Check]:
             f"The liquid struck the roof (head up to {motion.head:.1f} m): peaks of force, moment and wheel load "
             "depend on tank.liquid.slot_speed there; means and the braking distance hardly do.",
         )
+        if motion.slot_alone:
+            yield _slot_check(tank, motion.head)
+
+
+def _slot_check(tank: Tank, head: float) -> Check:
+    """Most that the slot may hold, of the room above the still liquid: a head that falls evenly along the whole tank.
+
+    The slot of pressure waves at c has the width `g A/c^2`, A being the whole section.
+    """
+    section = section_of(tank)
+    whole = section.area(section.height)
+    free = whole - section.area(section.height * tank.fill)
+    share = 0.5 * STANDARD_GRAVITY * head / tank.liquid.slot_speed**2 * whole / free
+    return Check(
+        "liquid in the slot over the room above the liquid",
+        "model",
+        share,
+        SLOT_LIMIT,
+        f"Under its head the slot above the roof may hold up to {share:.0%} of the room above the liquid: the surface "
+        "elsewhere sinks for it, so that the shift of weight and the wheel unloading come out too large. Raise "
+        "tank.liquid.slot_speed, or take the load of a tank so full for rigid (tank.liquid.model: rigid).",
+    )
