@@ -18,7 +18,7 @@ def show_run(result: Result) -> None:
     from rich.text import Text
 
     stopped = result.status is Status.STOPPED
-    lines = [] if stopped else [f"The wagon did not stop: {result.status}. {result.reason}".rstrip()]
+    lines = [] if stopped else [f"No braking distance: {result.status}. {result.reason}".rstrip()]
     lines += [] if stopped else [result.status.remedy]
     alarms = [Text(line, style="bold red") for line in lines]
     alarms += [Text(f"warning: {warning}", style="bold yellow") for warning in result.warnings]

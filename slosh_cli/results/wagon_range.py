@@ -151,7 +151,10 @@ def residual_cause(scenario: Scenario, lifts: int) -> str:
     """What to do about a large energy residual: the cause that weighs most."""
     ends, elements = domain_errors(scenario)
     if lifts:
-        return "wheels lifted and landed, and an undamped contact does not converge there; rely on the distance only"
+        return (
+            "wheels lifted and landed, and an undamped contact does not converge there; a braking distance does, loads "
+            "do not"
+        )
     if ends > rail_reach.TOLD and ends > elements:
         return "the rail's wave runs out at the ends of its domain; lengthen track.domain.length, or leave it out"
     if elements > rail_reach.TOLD:

@@ -135,7 +135,7 @@ def test_a_run_without_an_answer_keeps_its_files_and_says_why(slosh: Slosh, solv
     outcome = slosh("run", PAPER, "-o", "here")
     assert outcome.code == ExitCode.NO_ANSWER == 3
     text = " ".join(outcome.out.split())
-    assert "did not stop: time-limit. still at 3.1 m/s after 600 s" in text
+    assert "No braking distance: time-limit. still at 3.1 m/s after 600 s" in text
     assert "solver.time_limit" in text
     assert "braking distance -" in text
     assert {"run.h5", "summary.csv"} <= names(tmp_path / "here")
