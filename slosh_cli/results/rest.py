@@ -10,20 +10,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Vector
+from slosh_cli.method import START
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import excite_kernels
 from slosh_cli.solver.setup import HALF, Problem
-from slosh_cli.solver.state import State
+from slosh_cli.solver.vehicle import Vehicle
+from slosh_cli.tank.cells import CellLiquid
+from slosh_cli.tank.liquid import FrozenLiquid
+from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.shallow import WORK_ROWS
-from slosh_cli.wagon.coordinates import CAR_PITCH
+from slosh_cli.wagon.model import CAR_PITCH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-Array = NDArray[np.float64]
 
 PERIODS = 4.0
 """Periods of the first mode that the modes are looked at for."""
@@ -38,12 +40,11 @@ REST_SPEED = 0.1
 """A stop speed (m/s) up to which a stopped wagon is as good as at rest."""
 
 
-def rest_checks(scenario: Scenario, stop: Problem, end: State) -> tuple[Check, ...]:
+def rest_checks(scenario: Scenario, stop: Problem) -> tuple[Check, ...]:
     """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
-    moving = stop.model.liquid.mu.size or stop.model.shallow.cells
-    if not moving or scenario.braking.stop_speed > REST_SPEED:
+    if isinstance(stop.vehicle.liquid, FrozenLiquid) or scenario.braking.stop_speed > REST_SPEED:
         return ()
-    (on, back), held = largest_pushes(stop, end), holding_force(scenario, stop.static_loads)
+    (on, back), held = largest_pushes(stop.vehicle), holding_force(scenario, stop.static_loads)
     push, way = max(on, back), "on" if on > held else "back"
     return (
         Check(
@@ -58,7 +59,7 @@ def rest_checks(scenario: Scenario, stop: Problem, end: State) -> tuple[Check, .
     )
 
 
-def holding_force(scenario: Scenario, static_loads: Sequence[float] | Array) -> float:
+def holding_force(scenario: Scenario, static_loads: Sequence[float] | Vector) -> float:
     """Largest force (N) along the track that a standing wagon bears: eight braked wheels and running resistance.
 
     `static_loads` (4,) N are those of the wheels on one rail.
@@ -68,20 +69,24 @@ def holding_force(scenario: Scenario, static_loads: Sequence[float] | Array) -> 
     return float(wheels.sum() / HALF + wagon.running_resistance.constant)
 
 
-def largest_pushes(stop: Problem, end: State) -> tuple[float, float]:
-    """Largest forces (N, of the whole tank) of the liquid on the tank held still from `end` on: forward, backward."""
-    forces = _push_of_cells(stop, end) if stop.model.shallow.cells else _push_of_modes(stop, end)
+def largest_pushes(vehicle: Vehicle) -> tuple[float, float]:
+    """Largest forces (N, of the whole tank) of the liquid on the tank held still from now on: forward, backward."""
+    liquid, pitch = vehicle.liquid, float(vehicle.points[START].q[CAR_PITCH])
+    forces = np.zeros(1)
+    if isinstance(liquid, CellLiquid):
+        forces = _push_of_cells(liquid, pitch)
+    elif isinstance(liquid, ModalLiquid):
+        forces = _push_of_modes(liquid, pitch)
     return max(float(forces.max(initial=0.0)) / HALF, 0.0), max(-float(forces.min(initial=0.0)) / HALF, 0.0)
 
 
-def _push_of_modes(stop: Problem, end: State) -> Array:
-    """Force (N) of half a tank's modes over time: each swings freely about where the pitch lets it rest."""
-    liquid, pitch = stop.model.liquid, float(end.start.q[CAR_PITCH])
+def _push_of_modes(liquid: ModalLiquid, pitch: float) -> Vector:
+    """Force (N) of half a tank's modes over time: each swings freely about where the `pitch` (rad) lets it rest."""
     frequency = np.sqrt(liquid.stiffness / liquid.mu)
     decay = 0.5 * liquid.damping / liquid.mu
     swing = np.sqrt(frequency**2 - decay**2)
-    place = end.start.slosh - liquid.pitch_weight * pitch / liquid.stiffness
-    other = (end.start.slosh_rate + decay * place) / swing
+    place = liquid.amplitude[START] - liquid.pitch_weight * pitch / liquid.stiffness
+    other = (liquid.rate[START] + decay * place) / swing
     duration = 2.0 * np.pi * PERIODS / frequency.min()
     count = min(int(PERIODS * SAMPLES * frequency.max() / frequency.min()), 100_000)
     time = np.linspace(0.0, duration, count)[:, None]
@@ -92,10 +97,10 @@ def _push_of_modes(stop: Problem, end: State) -> Array:
     return np.asarray(-acceleration @ liquid.lambda_1, dtype=np.float64)
 
 
-def _push_of_cells(stop: Problem, end: State) -> Array:
+def _push_of_cells(cells: CellLiquid, pitch: float) -> Vector:
     """Mean forces (N) of half a tank's cells over short stretches of time."""
-    liquid, pitch = stop.model.shallow, float(end.start.q[CAR_PITCH])
-    area, flow, depth = (column.copy() for column in end.cells_start)
+    liquid, start = cells.shallow, cells.start
+    area, flow, depth = start.area.copy(), start.flow.copy(), start.depth.copy()
     table, still = liquid.table, liquid.still_depth
     mean_depth = np.interp(still, table.depth, table.area) / np.interp(still, table.depth, table.width)
     period = 2.0 * liquid.cells * liquid.spacing / np.sqrt(liquid.gravity * mean_depth)

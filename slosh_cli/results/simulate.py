@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Matrix, Vector
+from slosh_cli.method import START
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
@@ -16,28 +17,27 @@ from slosh_cli.results.result import PerWheel, Result, Status
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
-from slosh_cli.solver import advance, record, state
-from slosh_cli.solver.cells import DEEPEST
-from slosh_cli.solver.ledger import BRAKE, CREEP, FOUNDATION, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
+from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.solver import advance
+from slosh_cli.solver.record import Columns, columns_of
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import HALF, Problem, problem
-from slosh_cli.solver.state import EVENTS, FACTORISATIONS, NEWTON, RIGHT_HAND_SIDES
+from slosh_cli.solver.vehicle import (
+    BRAKE,
+    CREEP,
+    FOUNDATION,
+    RESISTANCE,
+    SLOPE,
+    SLOSH_DAMPING,
+    SUSPENSION,
+    Vehicle,
+)
+from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.load import frozen_load
+from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.section import section_of
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
-from slosh_cli.wagon.coordinates import (
-    BOGIE_HEAVE,
-    BOGIE_PITCH,
-    CAR_HEAVE,
-    CAR_PITCH,
-    COORDINATES,
-    POSITION,
-    WHEEL_HEAVE,
-    WHEEL_SPIN,
-)
-from slosh_cli.wagon.model import GRAVITY
-
-Array = NDArray[np.float64]
+from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION
 
 WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
@@ -83,10 +83,11 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     stop = problem(scenario)
     static_loads = _per_wheel(stop.static_loads)
     run = integrate(stop, progress, cancel)
-    clock, onset = run.state.clock, run.state.counts[state.PHASE] > 0
+    vehicle, time = stop.vehicle, stop.train.time
+    end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
     status, reason = _OUTCOMES[run.outcome]
-    stopped = status is Status.STOPPED and onset
-    if status is Status.STOPPED and not onset:
+    stopped = status is Status.STOPPED and braked
+    if status is Status.STOPPED and not braked:
         status, reason = Status.FAILED, "came to rest at t = {time:.4g} s, before the brake set in: no braking distance"
     tank, weight = scenario.tank, stop.weight
     advice = recommended(scenario)
@@ -94,43 +95,38 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     return Result(
         scenario=scenario,
         status=status,
-        reason=reason.format(time=clock[state.TIME], speed=run.state.start.v[POSITION]),
+        reason=reason.format(time=time, speed=end.v[POSITION]),
         warnings=tuple(warnings_of(verdicts)),
         checks=verdicts,
         recommendation=advice,
-        time=run.rows[:, record.TIME_COLUMN],
-        channels=_channels(scenario, stop, run),
-        braking_distance_m=float(run.state.start.q[POSITION] - clock[state.ONSET_POSITION]) if stopped else None,
-        braking_time_s=float(clock[state.TIME] - clock[state.ONSET_TIME]) if stopped else None,
-        max_surface_m=float(run.state.surface[0]),
+        time=run.rows[:, 0, 0],
+        channels=_channels(scenario, vehicle, run.rows[:, 0]),
+        braking_distance_m=float(end.q[POSITION] - account.onset_position) if stopped else None,
+        braking_time_s=time - account.onset_time if stopped else None,
+        max_surface_m=account.surface,
         surface_limit_m=section_of(tank).height * (1 - tank.fill),
-        min_wheel_load_N=_per_wheel(run.state.least) if onset else static_loads,
-        max_wheel_load_N=_per_wheel(run.state.largest) if onset else static_loads,
+        min_wheel_load_N=_per_wheel(account.least) if braked else static_loads,
+        max_wheel_load_N=_per_wheel(account.largest) if braked else static_loads,
         static_wheel_load_N=static_loads,
-        mean_total_wheel_load_N=WHOLE * _mean_load(run, weight),
+        mean_total_wheel_load_N=WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
         weight_N=WHOLE * weight,
-        locked_time_s=_per_wheel(run.state.locked_time),
-        energy_residual=float(run.state.residual[2]),
-        energy=_final_energy(run),
-        steps=int(run.state.counts[state.STEPS]),
-        rejected_steps=int(run.state.counts[state.REJECTED]),
+        locked_time_s=_per_wheel(account.locked_time),
+        energy_residual=stop.train.largest_residual,
+        energy=_final_energy(stop),
+        steps=stop.train.steps,
+        rejected_steps=stop.train.rejected,
         work={
-            "newton_iterations": int(run.state.work[NEWTON]),
-            "factorisations": int(run.state.work[FACTORISATIONS]),
-            "right_hand_sides": int(run.state.work[RIGHT_HAND_SIDES]),
-            "events": int(run.state.work[EVENTS]),
+            "newton_iterations": account.newton,
+            "factorisations": account.factorisations,
+            "right_hand_sides": account.right_hand_sides,
+            "events": stop.train.events,
         },
         solve_seconds=run.seconds,
     )
 
 
-def _per_wheel(values: Array) -> PerWheel:
+def _per_wheel(values: Vector) -> PerWheel:
     return cast(PerWheel, tuple(float(value) for value in values))
-
-
-def _mean_load(run: Run, weight: float) -> float:
-    impulse, seconds = run.state.load_sum
-    return float(impulse / seconds) if seconds > 0 else weight
 
 
 def recommended(scenario: Scenario) -> Recommendation | None:
@@ -143,38 +139,40 @@ def recommended(scenario: Scenario) -> Recommendation | None:
 def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
     """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track, its rest."""
     tank, sentence = scenario.tank, advice.sentence if advice else ""
-    shallow, braked = stop.model.shallow, run.state.counts[state.PHASE] > 0
-    head = max(float(run.state.push[DEEPEST] - shallow.table.depth[-1]), 0.0) if shallow.cells else 0.0
-    motion = Motion(float(run.state.surface[0]), head)
+    liquid, stopped = stop.vehicle.liquid, run.outcome == advance.STOPPED and stop.vehicle.brake.breaks > 0
+    flowing = isinstance(liquid, CellLiquid)
+    head = max(liquid.deepest - float(liquid.shallow.table.depth[-1]), 0.0) if flowing else 0.0
+    motion = Motion(stop.vehicle.account.surface, head)
     return (
         *tank_checks(tank, sentence),
         *motion_checks(tank, motion, sentence),
         *checks(_extent(scenario, stop, run)),
         *wagon_checks(scenario),
-        *(rest_checks(scenario, stop, run.state) if run.outcome == advance.STOPPED and braked else ()),
+        *(rest_checks(scenario, stop) if stopped else ()),
     )
 
 
 def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
     """What the verdicts on the run as a whole look at."""
-    least, lifts = np.minimum(run.state.least, stop.static_loads), int(run.state.lifted[0])
+    account = stop.vehicle.account
     return Extent(
-        unloading=float(np.max(1 - least / stop.static_loads)),
-        lifts=lifts,
+        unloading=float(np.max(1 - np.minimum(account.least, stop.static_loads) / stop.static_loads)),
+        lifts=account.lifted,
         pitched=run.outcome == advance.PITCH_LIMIT,
-        residual=float(run.state.residual[2]),
-        residual_cause=residual_cause(scenario, lifts),
-        locked=_per_wheel(run.state.locked_time),
+        residual=stop.train.largest_residual,
+        residual_cause=residual_cause(scenario, account.lifted),
+        locked=_per_wheel(account.locked_time),
     )
 
 
-def _final_energy(run: Run) -> dict[str, float]:
+def _final_energy(stop: Problem) -> dict[str, float]:
     """The ledger at the end of the run, J of the whole wagon."""
-    kinetic, elastic, slosh = WHOLE * run.state.energies
-    losses = WHOLE * run.state.losses
+    account = stop.vehicle.account
+    kinetic, elastic, slosh = WHOLE * account.energies
+    losses = WHOLE * account.losses
     return {
-        "initial_kinetic": WHOLE * float(run.state.clock[state.INITIAL_KINETIC]),
-        "initial_total": WHOLE * float(run.state.clock[state.TOTAL_START]),
+        "initial_kinetic": WHOLE * stop.train.initial_kinetic,
+        "initial_total": WHOLE * stop.train.total_start,
         "kinetic": float(kinetic),
         "elastic": float(elastic),
         "slosh": float(slosh),
@@ -193,81 +191,80 @@ _LOSSES = {
 }
 
 
-def _channels(scenario: Scenario, stop: Problem, run: Run) -> dict[str, Array]:
-    """Histories by channel name, from the raw record."""
-    rows = run.rows
-    place = rows[:, record.PLACE_COLUMN :][:, :COORDINATES]
-    speed = rows[:, record.SPEED_COLUMN :][:, :COORDINATES]
-    acceleration = rows[:, record.ACCELERATION_COLUMN :][:, :COORDINATES]
+def _channels(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str, Vector]:
+    """Histories by channel name, from a vehicle's raw rows."""
+    wagon, columns = vehicle.wagon, columns_of(vehicle)
+    place, speed, acceleration = np.split(rows[:, columns.place : columns.normal], 3, axis=1)
     channels = {
         "position": place[:, POSITION],
         "speed": speed[:, POSITION],
         "acceleration": acceleration[:, POSITION],
-        "car_acceleration": acceleration @ stop.model.wagon.car_row,
+        "car_acceleration": acceleration @ wagon.car_row,
         "car_heave": place[:, CAR_HEAVE],
         "car_pitch": place[:, CAR_PITCH],
     }
-    for bogie in (0, 1):
-        channels[f"bogie_{bogie + 1}_heave"] = place[:, BOGIE_HEAVE + 2 * bogie]
-        channels[f"bogie_{bogie + 1}_pitch"] = place[:, BOGIE_PITCH + 2 * bogie]
-    radius = stop.model.wagon.wheel_radius
+    for bogie in range(wagon.bogies):
+        channels[f"bogie_{bogie + 1}_heave"] = place[:, FIRST_BOGIE + 2 * bogie]
+        channels[f"bogie_{bogie + 1}_pitch"] = place[:, FIRST_BOGIE + 2 * bogie + 1]
     train_speed = np.maximum(np.abs(speed[:, POSITION]), CREEPAGE_SPEED_FLOOR)
     for i in WHEELS:
-        rolling = radius * speed[:, WHEEL_SPIN + i - 1]
-        channels[wheel(i, "heave")] = place[:, WHEEL_HEAVE + i - 1]
+        rolling = wagon.wheel_radius * speed[:, wagon.first_spin + i - 1]
+        channels[wheel(i, "heave")] = place[:, wagon.first_wheel + i - 1]
         channels[wheel(i, "speed")] = rolling
         channels[wheel(i, "creepage")] = (speed[:, POSITION] - rolling) / train_speed
-        channels[wheel(i, "normal_force")] = rows[:, record.NORMAL_COLUMN + i - 1]
-        channels[wheel(i, "tangential_force")] = rows[:, record.CREEP_COLUMN + i - 1]
-        channels[wheel(i, "brake_torque")] = rows[:, record.TORQUE_COLUMN + i - 1]
-        channels[wheel(i, "rail_deflection")] = rows[:, record.RAIL_COLUMN + i - 1]
-    return channels | _liquid_channels(scenario, stop, rows, place, acceleration) | _energy_channels(rows)
+        channels[wheel(i, "normal_force")] = rows[:, columns.normal + i - 1]
+        channels[wheel(i, "tangential_force")] = rows[:, columns.creep + i - 1]
+        channels[wheel(i, "brake_torque")] = rows[:, columns.torque + i - 1]
+        channels[wheel(i, "rail_deflection")] = rows[:, columns.rail + i - 1]
+    recorded = rows[:, columns.liquid : columns.end]
+    if isinstance(vehicle.liquid, CellLiquid):
+        channels |= _cell_channels(scenario, recorded, acceleration)
+    else:
+        channels |= _load_channels(scenario, vehicle, recorded, place, acceleration)
+    return channels | _energy_channels(rows, columns)
 
 
-def _liquid_channels(
-    scenario: Scenario, stop: Problem, rows: Array, place: Array, acceleration: Array
-) -> dict[str, Array]:
-    """Slosh amplitudes, surface and the load's force and moment on the whole tank (model section 3).
+def _load_channels(
+    scenario: Scenario, vehicle: Vehicle, recorded: Matrix, place: Matrix, acceleration: Matrix
+) -> dict[str, Vector]:
+    """The load's force and moment on the whole tank (model section 3), slosh amplitudes and the surface.
 
     The force is the derivative of the liquid's momentum, the frozen part included.
     """
-    if stop.model.shallow.cells:
-        return _cell_channels(scenario, rows, acceleration)
-    liquid, load = stop.model.liquid, frozen_load(scenario.tank)
-    modes = liquid.mu.size
-    amplitude = rows[:, record.SLOSH_COLUMN :][:, :modes]
-    second = rows[:, record.SLOSH_COLUMN + modes :][:, :modes]
-    tank_acceleration = acceleration @ stop.model.wagon.tank_row
-    pitch, pitch_acceleration = place[:, CAR_PITCH], acceleration[:, CAR_PITCH]
-    centre = tank_acceleration + load.centre_height * pitch_acceleration
-    weight_arm = GRAVITY * load.mass * load.centre_height * pitch + WHOLE * amplitude @ liquid.pitch_weight
+    load, pitch, turning = frozen_load(scenario.tank), place[:, CAR_PITCH], acceleration[:, CAR_PITCH]
+    centre = acceleration @ vehicle.wagon.tank_row + load.centre_height * turning
+    weight_arm = STANDARD_GRAVITY * load.mass * load.centre_height * pitch
     channels = {
-        "liquid_force": -load.mass * centre - WHOLE * second @ liquid.lambda_1,
-        "liquid_moment": weight_arm
-        - load.mass * load.centre_height * centre
-        - load.pitch_inertia * pitch_acceleration
-        - WHOLE * second @ liquid.lambda_02,
-        "surface_front": amplitude @ liquid.side,
-        "surface_rear": -amplitude @ liquid.side,
+        "liquid_force": -load.mass * centre,
+        "liquid_moment": weight_arm - load.mass * load.centre_height * centre - load.pitch_inertia * turning,
+        "surface_front": np.zeros(len(place)),
+        "surface_rear": np.zeros(len(place)),
     }
-    return channels | {slosh_amplitude(n + 1): amplitude[:, n] for n in range(modes)}
+    liquid = vehicle.liquid
+    if not isinstance(liquid, ModalLiquid):
+        return channels
+    amplitude, second = np.split(recorded, 2, axis=1)
+    channels["liquid_force"] -= WHOLE * second @ liquid.lambda_1
+    channels["liquid_moment"] += WHOLE * (amplitude @ liquid.pitch_weight - second @ liquid.lambda_02)
+    channels["surface_front"] = amplitude @ liquid.side
+    channels["surface_rear"] = -amplitude @ liquid.side
+    return channels | {slosh_amplitude(n + 1): amplitude[:, n] for n in range(amplitude.shape[1])}
 
 
-def _cell_channels(scenario: Scenario, rows: Array, acceleration: Array) -> dict[str, Array]:
+def _cell_channels(scenario: Scenario, recorded: Matrix, acceleration: Matrix) -> dict[str, Vector]:
     """Force and moment of the shallow-water liquid on the whole tank (means over steps), surface at both walls."""
-    cells = rows[:, record.CELLS_COLUMN :]
     return {
-        "liquid_force": WHOLE * cells[:, 0],
-        "liquid_moment": WHOLE * cells[:, 1] - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
-        "surface_front": cells[:, 2],
-        "surface_rear": cells[:, 3],
+        "liquid_force": WHOLE * recorded[:, 0],
+        "liquid_moment": WHOLE * recorded[:, 1] - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
+        "surface_front": recorded[:, 2],
+        "surface_rear": recorded[:, 3],
     }
 
 
-def _energy_channels(rows: Array) -> dict[str, Array]:
+def _energy_channels(rows: Matrix, columns: Columns) -> dict[str, Vector]:
     stored = ("energy_kinetic", "energy_elastic", "energy_slosh")
-    channels = {name: WHOLE * rows[:, record.ENERGY_COLUMN + k] for k, name in enumerate(stored)}
+    channels = {name: WHOLE * rows[:, columns.energies + k] for k, name in enumerate(stored)}
     for name, place in _LOSSES.items():
-        channels[f"energy_{name}"] = WHOLE * rows[:, record.LOSS_COLUMN + place]
-    channels["energy_residual"] = rows[:, record.RESIDUAL_COLUMN]
+        channels[f"energy_{name}"] = WHOLE * rows[:, columns.losses + place]
+    channels["energy_residual"] = rows[:, columns.residual]
     return channels

@@ -10,17 +10,14 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Vector
 from slosh_cli.results.recommendation import stop_deceleration, total_mass
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario, rail_reach
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.section import section_of
-from slosh_cli.wagon.coordinates import BOGIE_PITCH, COORDINATES, POSITION, WHEEL_HEAVE, WHEELS
-from slosh_cli.wagon.model import wagon_model
-
-Array = NDArray[np.float64]
+from slosh_cli.wagon.model import POSITION, wagon_model
 
 AXLE_LOAD_LIMIT = 22.5
 """t; line category D (EN 15528), the heaviest that most European lines take."""
@@ -164,15 +161,15 @@ def residual_cause(scenario: Scenario, lifts: int) -> str:
     return "steps are long for this stop; lower solver.tolerance"
 
 
-def braked_wheel_loads(scenario: Scenario) -> Array:
+def braked_wheel_loads(scenario: Scenario) -> Vector:
     """Wheel loads (4,) N of the steadily braked wagon with a rigid load: static, on a rigid track, no wheel locked."""
     tank = scenario.tank
     model = wagon_model(scenario.wagon, tank.bottom_height, frozen_load(tank))
     slowing = stop_deceleration(scenario)
     drive = model.weight + slowing * model.mass[:, POSITION]
-    drive[[BOGIE_PITCH, BOGIE_PITCH + 2]] += 2.0 * scenario.braking.torque
-    free, wheels = np.arange(1, WHEEL_HEAVE), np.arange(WHEEL_HEAVE, WHEEL_HEAVE + WHEELS)
-    place = np.zeros(COORDINATES)
+    np.add.at(drive, model.frame, scenario.braking.torque)
+    free, wheels = np.arange(1, model.first_wheel), np.arange(model.first_wheel, model.first_spin)
+    place = np.zeros(model.coordinates)
     place[free] = np.linalg.solve(model.stiffness[np.ix_(free, free)], drive[free])
     return np.asarray(model.stiffness[wheels] @ place - drive[wheels], dtype=np.float64)
 

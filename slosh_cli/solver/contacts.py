@@ -1,264 +1,303 @@
-"""Newton on what is left of a stage once rail and wagon are condensed: four contacts and the track's coordinate.
+"""Newton on what is left of a vehicle's stage once rail and bodies are condensed: its contacts and its way along the
+track.
 
-The wagon's bodies answer linearly to four wheel loads, a force along the track and a moment on either bogie; their
-answers to unit inputs are in `scratch.response` (7, 11), the accelerations without them in `scratch.free_bodies`.
+The bodies answer linearly to their inputs, as `vehicle.Scratch` has them: `scratch.response` are the answers to unit
+inputs, `scratch.free_bodies` the accelerations without any. A pass solves one linear system of the wheel loads and the
+acceleration along the track; the spins are eliminated.
 """
 
 from __future__ import annotations
 
-from slosh_cli.compiled import inner_kernel, part_kernel
+from slosh_cli.compiled import inner_kernel
+from slosh_cli.method import BASE
 from slosh_cli.solver.dense import factor_dense, solve_dense
-from slosh_cli.solver.state import BOGIE_INPUT, INPUTS, NEWTON, PUSH_INPUT, UNKNOWNS
-from slosh_cli.track.contact import creep_force, normal_force
-from slosh_cli.track.vectors import fill
-from slosh_cli.wagon.coordinates import BODIES, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+from slosh_cli.vectors import fill
+from slosh_cli.wagon.locking import wheel_forces
+from slosh_cli.wagon.model import FIRST_BOGIE
 
-MOST_NEWTON = 12
-NEWTON_SHARE = 1e-2
+_NEWTON_SHARE = 1e-2
 """What a Newton update leaves open may be this part of the allowed step error."""
-LOAD_SHARE = 1e-6
+_LOAD_SHARE = 1e-6
 """Newton solves wheel loads to this part of the static load."""
+OPEN, SOLVED, LOST = range(3)
+"""What an update of `take_update` leaves of a vehicle's equations."""
 
 
 @inner_kernel
-def running_resistance(wagon, speed):
-    """Running resistance (N) on half the wagon and its derivative (N s/m); model section 8."""
-    force = wagon.resistance[0] + speed * (wagon.resistance[1] + speed * wagon.resistance[2])
-    return force, wagon.resistance[1] + 2.0 * speed * wagon.resistance[2]
+def _frame_input(wagon, wheel):
+    """Place among the inputs of the moment on the bogie that carries the brake of `wheel`."""
+    return wagon.wheels + 1 + (wagon.frame[wheel] - FIRST_BOGIE) // 2
 
 
 @inner_kernel
-def _linearise(model, scratch, locked, step):
-    """Factor the equations of `UNKNOWNS` at the forces' present slopes, into `scratch.coupled`.
-
-    A creep force changes by `load_gain dN + speed_gain da`, its spin's own change eliminated (model section 7); it
-    pushes back on the track's coordinate and, where the wheel is locked, turns the bogie.
-    """
-    wagon, response, coupled = model.wagon, scratch.response, scratch.coupled
-    radius, square = wagon.wheel_radius, step * step
-    for j in range(WHEELS):
-        inertia = wagon.mass[WHEEL_SPIN + j, WHEEL_SPIN + j]
-        slip, along = scratch.creep_by_slip[j], scratch.creep_by_slip[j] + scratch.creep_by_speed[j]
-        give = 1.0 if locked[j] else 1.0 / (1.0 + step * radius * radius * slip / inertia)
-        scratch.load_gain[j] = give * scratch.creep_by_normal[j]
-        scratch.speed_gain[j] = give * step * along
-        scratch.spin_gain[j] = 0.0 if locked[j] else -give * step * radius * slip / inertia
-    resistance = step * scratch.resistance_slope[0]
-    for i in range(UNKNOWNS):
-        row = WHEEL_HEAVE + i if i < WHEELS else 0
-        by_speed = -resistance * response[PUSH_INPUT, row]
-        for j in range(WHEELS):
-            by_creep = _creep_input(scratch, locked, radius, j, row)
-            by_speed += by_creep * scratch.speed_gain[j]
-            coupled[i, j] = response[j, row] + by_creep * scratch.load_gain[j]
-        coupled[i, WHEELS] = by_speed
-    for i in range(WHEELS):
-        stiff = square * scratch.normal_slope[i]
-        for j in range(WHEELS):
-            coupled[i, j] = stiff * (coupled[i, j] + scratch.contact_flexibility[i, j])
-        coupled[i, WHEELS] *= stiff
-        coupled[i, i] += 1.0
-        coupled[WHEELS, i] *= -1.0
-    coupled[WHEELS, WHEELS] = 1.0 - coupled[WHEELS, WHEELS]
-    factor_dense(coupled, scratch.pivots)
+def _read_inputs(vehicle, point):
+    """The forces at the iterate as inputs of the bodies."""
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    inputs, normal, creep, torque, along = scratch.inputs, point.normal, point.creep, point.torque, wagon.wheels
+    resistance, slope = vehicle.line.resisting_force(point.v[0])
+    scratch.resistance_slope = slope
+    fill(inputs, 0.0)
+    inputs[along] = -resistance
+    inputs[inputs.size - 1] = vehicle.coupling_force
+    for i in range(wagon.wheels):
+        inputs[i] = normal[i]
+        inputs[along] -= creep[i]
+        inputs[_frame_input(wagon, i)] += torque[i]
 
 
 @inner_kernel
-def _creep_input(scratch, locked, radius, wheel, row):
-    """Acceleration of body `row` per newton of creep force at `wheel`."""
-    value = -scratch.response[PUSH_INPUT, row]
-    if locked[wheel]:
-        value += radius * scratch.response[BOGIE_INPUT + wheel // 2, row]
-    return value
-
-
-@inner_kernel
-def _solve_changes(model, scratch, locked, step, along_gap):
-    """Changes of wheel loads, acceleration along the track and creep forces that close the gaps.
-
-    `scratch.load_gap` (4,) N, `along_gap` m/s^2 and `scratch.spin_gap` (4,) N m are what is missing in the contacts'
-    laws, along the track and in the spins. Into `scratch.load_change`, `.spin_change`, `.creep_change`; returns the
-    acceleration's change.
-    """
-    wagon, right = model.wagon, scratch.coupled_right
-    load_gap, spin_gap = scratch.load_gap, scratch.spin_gap
-    radius, square = wagon.wheel_radius, step * step
-    for i in range(UNKNOWNS):
-        row = WHEEL_HEAVE + i if i < WHEELS else 0
-        by_spin = 0.0
-        for j in range(WHEELS):
-            by_spin += _creep_input(scratch, locked, radius, j, row) * scratch.spin_gain[j] * spin_gap[j]
-        right[i] = load_gap[i] - square * scratch.normal_slope[i] * by_spin if i < WHEELS else along_gap + by_spin
-    solve_dense(scratch.coupled, scratch.pivots, right)
-    along = right[WHEELS]
-    for i in range(WHEELS):
-        scratch.load_change[i] = right[i]
-        creep = scratch.load_gain[i] * right[i] + scratch.speed_gain[i] * along + scratch.spin_gain[i] * spin_gap[i]
-        scratch.creep_change[i] = creep
-        turning = (radius * creep + spin_gap[i]) / wagon.mass[WHEEL_SPIN + i, WHEEL_SPIN + i]
-        scratch.spin_change[i] = 0.0 if locked[i] else turning
-    return along
-
-
-@inner_kernel
-def wheel_forces(model, scratch, point, locked, torque):
-    """Creep forces, transmitted brake torques and their derivatives at the point's state."""
-    radius = model.wagon.wheel_radius
-    speed = point.v[0]
-    for i in range(WHEELS):
-        slip = speed - radius * point.v[WHEEL_SPIN + i]
-        force, by_normal, by_slip, by_speed = creep_force(model.contact, point.normal[i], slip, speed)
-        point.creep[i] = force
-        point.torque[i] = force * radius if locked[i] else torque
-        scratch.creep_by_normal[i] = by_normal
-        scratch.creep_by_slip[i] = by_slip
-        scratch.creep_by_speed[i] = by_speed
-
-
-@inner_kernel
-def brake_holds(model, point, wheel, torque, torque_rate, tolerance):
-    """Whether a brake that can bear `torque` (N m), changing by `torque_rate` (N m/s), holds a wheel that is at rest.
-
-    It does below its torque, and at it (within `tolerance`, a part of it) while `f R` grows no faster: model section 8.
-    """
-    if torque <= 0.0:
-        return False
-    contact, under, speed = model.contact, model.rail.contact[wheel], point.v[0]
-    heave = WHEEL_HEAVE + wheel
-    normal, slope = normal_force(contact, point.rail[under] - point.q[heave])
-    force, by_normal, by_slip, by_speed = creep_force(contact, normal, speed, speed)
-    radius = model.wagon.wheel_radius
-    over = force * radius - torque
-    if abs(over) > tolerance * torque:
-        return over < 0.0
-    rate = by_normal * slope * (point.rail_rate[under] - point.v[heave]) + (by_slip + by_speed) * point.a[0]
-    return rate * radius <= torque_rate
-
-
-@inner_kernel
-def _inputs(model, scratch, point):
-    """The forces in the order of the wagon's inputs, into `scratch.inputs` (7,)."""
-    inputs = scratch.inputs
-    resistance, scratch.resistance_slope[0] = running_resistance(model.wagon, point.v[0])
-    inputs[PUSH_INPUT] = -resistance
-    inputs[BOGIE_INPUT] = inputs[BOGIE_INPUT + 1] = 0.0
-    for i in range(WHEELS):
-        inputs[i] = point.normal[i]
-        inputs[PUSH_INPUT] -= point.creep[i]
-        inputs[BOGIE_INPUT + i // 2] += point.torque[i]
+def _respond_bodies(scratch, accelerations):
+    """Accelerations of all bodies under the inputs in hand."""
+    response, inputs, free = scratch.response, scratch.inputs, scratch.free_bodies
+    for i in range(free.size):
+        total = free[i]
+        for k in range(inputs.size):
+            total += response[k, i] * inputs[k]
+        accelerations[i] = total
 
 
 @inner_kernel
 def _body_acceleration(scratch, row):
     """Acceleration of body `row` under the inputs in hand."""
+    response, inputs = scratch.response, scratch.inputs
     total = scratch.free_bodies[row]
-    for k in range(INPUTS):
-        total += scratch.response[k, row] * scratch.inputs[k]
+    for k in range(inputs.size):
+        total += response[k, row] * inputs[k]
     return total
 
 
 @inner_kernel
-def _turn_spin(scratch, base, point, wheel, radius, step):
+def _read_gains(vehicle, step):
+    """How creep forces and transmitted torques change with wheel load, acceleration along the track and spin gap.
+
+    A creep force changes by `load_gain dN + speed_gain da + spin_gain gap`, its spin's own change eliminated (model
+    section 7); with it the moment on the bogie, by `turn_gain` times that and `turn_by_gap` times the gap.
+    """
+    wagon, scratch, locked = vehicle.wagon, vehicle.scratch, vehicle.locked
+    mass, radius, first = wagon.mass, wagon.wheel_radius, wagon.first_spin
+    by_slip, by_speed, by_normal = scratch.creep_by_slip, scratch.creep_by_speed, scratch.creep_by_normal
+    for j in range(wagon.wheels):
+        torque = step * scratch.torque_slope[j]
+        inertia = mass[first + j, first + j] + torque
+        slip, along = by_slip[j], by_slip[j] + by_speed[j]
+        if locked[j]:
+            give, turning, scratch.turn_gain[j], scratch.turn_by_gap[j] = 1.0, 0.0, radius, 0.0
+        else:
+            give = 1.0 / (1.0 + step * radius * radius * slip / inertia)
+            turning = -give * step * radius * slip / inertia
+            scratch.turn_gain[j], scratch.turn_by_gap[j] = torque * radius / inertia, torque / inertia
+        scratch.load_gain[j] = give * by_normal[j]
+        scratch.speed_gain[j] = give * step * along
+        scratch.spin_gain[j] = turning
+
+
+@inner_kernel
+def _linearise(vehicle, step):
+    """Factor the equations of wheel loads and acceleration at the forces' present slopes, into `scratch.coupled`."""
+    _read_gains(vehicle, step)
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    response, coupled, between = scratch.response, scratch.coupled, vehicle.rail_work.between
+    load_gain, speed_gain, normal_slope = scratch.load_gain, scratch.speed_gain, scratch.normal_slope
+    wheels, square = wagon.wheels, step * step
+    resistance = step * scratch.resistance_slope
+    for i in range(wheels + 1):
+        row = wagon.first_wheel + i if i < wheels else 0
+        by_speed = -resistance * response[wheels, row]
+        for j in range(wheels):
+            by_creep = _creep_input(vehicle, j, row)
+            by_speed += by_creep * speed_gain[j]
+            coupled[i, j] = response[j, row] + by_creep * load_gain[j]
+        coupled[i, wheels] = by_speed
+    for i in range(wheels):
+        stiff = square * normal_slope[i]
+        for j in range(wheels):
+            coupled[i, j] = stiff * (coupled[i, j] + between[i, j])
+        coupled[i, wheels] *= stiff
+        coupled[i, i] += 1.0
+        coupled[wheels, i] *= -1.0
+    coupled[wheels, wheels] = 1.0 - coupled[wheels, wheels]
+    factor_dense(coupled, scratch.pivots)
+
+
+@inner_kernel
+def _creep_input(vehicle, wheel, row):
+    """Acceleration of body `row` per newton of creep force at `wheel`."""
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    response, turn = scratch.response, scratch.turn_gain[wheel]
+    value = -response[wagon.wheels, row]
+    if turn != 0.0:
+        value += turn * response[_frame_input(wagon, wheel), row]
+    return value
+
+
+@inner_kernel
+def solve_changes(vehicle, step, along_gap):
+    """Changes of wheel loads, acceleration along the track and creep forces that close the gaps.
+
+    `scratch.load_gap` (wheels,) N, `along_gap` m/s^2 and `scratch.spin_gap` (wheels,) N m are what is missing in the
+    contacts' laws, along the track and in the spins. Into `scratch.load_change`, `.spin_change`, `.creep_change`;
+    returns the acceleration's change. The moments on the bogies change by `turn_gain` and `turn_by_gap`.
+    """
+    wagon, scratch, locked = vehicle.wagon, vehicle.scratch, vehicle.locked
+    right, load_gap, spin_gap = scratch.coupled_right, scratch.load_gap, scratch.spin_gap
+    response, spin_gain, normal_slope = scratch.response, scratch.spin_gain, scratch.normal_slope
+    radius, wheels, square = wagon.wheel_radius, wagon.wheels, step * step
+    for i in range(wheels + 1):
+        row = wagon.first_wheel + i if i < wheels else 0
+        by_spin = 0.0
+        for j in range(wheels):
+            by_spin += _creep_input(vehicle, j, row) * spin_gain[j] * spin_gap[j]
+            if scratch.turn_by_gap[j] != 0.0:
+                by_spin += scratch.turn_by_gap[j] * spin_gap[j] * response[_frame_input(wagon, j), row]
+        right[i] = load_gap[i] - square * normal_slope[i] * by_spin if i < wheels else along_gap + by_spin
+    solve_dense(scratch.coupled, scratch.pivots, right)
+    along = right[wheels]
+    for i in range(wheels):
+        scratch.load_change[i] = right[i]
+        creep = scratch.load_gain[i] * right[i] + scratch.speed_gain[i] * along + spin_gain[i] * spin_gap[i]
+        scratch.creep_change[i] = creep
+        inertia = wagon.mass[wagon.first_spin + i, wagon.first_spin + i] + step * scratch.torque_slope[i]
+        scratch.spin_change[i] = 0.0 if locked[i] else (radius * creep + spin_gap[i]) / inertia
+    return along
+
+
+@inner_kernel
+def _turn_spin(vehicle, base, point, wheel, step):
     """Add its change to a spin's acceleration, down to no slip where the slip would change its sign; True if so.
 
     The creep force bends away from its slope at zero slip on either side: from far out Newton would jump across it to
     and fro, from zero it does not.
     """
-    spin = WHEEL_SPIN + wheel
+    wagon, change, radius = vehicle.wagon, vehicle.scratch.spin_change[wheel], vehicle.wagon.wheel_radius
+    spin = wagon.first_spin + wheel
     before = point.v[0] - radius * point.v[spin]
-    point.a[spin] += scratch.spin_change[wheel]
+    point.a[spin] += change
     after = base.v[0] + step * point.a[0] - radius * (base.v[spin] + step * point.a[spin])
-    if before * after < 0.0 and scratch.spin_change[wheel] != 0.0 and point.normal[wheel] > 0.0 and step > 0.0:
+    if before * after < 0.0 and change != 0.0 and point.normal[wheel] > 0.0 and step > 0.0:
         point.a[spin] += after / (step * radius)
         return True
     return False
 
 
 @inner_kernel
-def _contact_gaps(model, scratch, base, point, locked, step, torque):
-    """What the forces at the iterate leave open in the contacts and the spins; returns the same along the track.
+def _contact_gaps(vehicle, base, point, step, time):
+    """What the forces at the iterate leave open in the contacts, the spins and along the track.
 
     The contacts are taken where the last linear solution put the wheels, not where forces still off their laws would.
     """
-    radius, square = model.wagon.wheel_radius, step * step
-    point.v[0] = base.v[0] + step * point.a[0]
-    for i in range(WHEEL_SPIN, COORDINATES):
-        point.v[i] = base.v[i] + step * point.a[i]
-    wheel_forces(model, scratch, point, locked, torque)
-    _inputs(model, scratch, point)
-    for i in range(WHEELS):
-        taken, heave = point.a[WHEEL_HEAVE + i], _body_acceleration(scratch, WHEEL_HEAVE + i)
-        approach = scratch.free[i] - base.q[WHEEL_HEAVE + i] - square * taken
-        for j in range(WHEELS):
-            approach -= square * scratch.contact_flexibility[i, j] * (point.normal[j] - scratch.load_before[j])
-        force, slope = normal_force(model.contact, approach)
+    wagon, contact, scratch, locked = vehicle.wagon, vehicle.contact, vehicle.scratch, vehicle.locked
+    v, a, normal, between = point.v, point.a, point.normal, vehicle.rail_work.between
+    base_q, base_v, free, before = base.q, base.v, scratch.free, scratch.load_before
+    radius, square, first_spin = wagon.wheel_radius, step * step, wagon.first_spin
+    v[0] = base_v[0] + step * a[0]
+    for i in range(first_spin, wagon.coordinates):
+        v[i] = base_v[i] + step * a[i]
+    wheel_forces(vehicle, point, time)
+    _read_inputs(vehicle, point)
+    for i in range(wagon.wheels):
+        place = wagon.first_wheel + i
+        taken, heave = a[place], _body_acceleration(scratch, place)
+        approach = contact.approach(free[i], base_q[place]) - square * taken
+        for j in range(wagon.wheels):
+            approach -= square * between[i, j] * (normal[j] - before[j])
+        force, slope = contact.normal_force(approach)
         scratch.normal_slope[i] = slope
-        scratch.load_gap[i] = force - square * slope * (heave - taken) - point.normal[i]
-        spin = model.wagon.mass[WHEEL_SPIN + i, WHEEL_SPIN + i] * point.a[WHEEL_SPIN + i]
-        scratch.spin_gap[i] = 0.0 if locked[i] else point.creep[i] * radius - torque - spin
-    return _body_acceleration(scratch, 0) - point.a[0]
+        scratch.load_gap[i] = force - square * slope * (heave - taken) - normal[i]
+        spin = wagon.mass[first_spin + i, first_spin + i] * a[first_spin + i]
+        scratch.spin_gap[i] = 0.0 if locked[i] else point.creep[i] * radius - point.torque[i] - spin
+    scratch.along_gap = _body_acceleration(scratch, 0) - a[0]
 
 
-@part_kernel
-def solve_wheels(model, scratch, work, base, point, locked, step, torque):
-    """Solve the contacts for the rail's free displacements `scratch.free` (4,) under `scratch.load_before`.
+@inner_kernel
+def find_update(vehicle, point, step, time, first):
+    """Newton's update of the stage's `point`, which is at `time` (s): it changes the acceleration along the track by
+    the value returned, the rest by what `solve_changes` leaves. The `first` one lets locked wheels stand."""
+    wagon = vehicle.wagon
+    for i in range(wagon.wheels):
+        if first and vehicle.locked[i]:
+            point.a[wagon.first_spin + i] = 0.0
+    vehicle.account.newton += 1
+    _contact_gaps(vehicle, vehicle.points[BASE], point, step, time)
+    _linearise(vehicle, step)
+    return solve_changes(vehicle, step, vehicle.scratch.along_gap)
 
-    Returns True when converged; leaves loads, and the wagon's accelerations, speeds and places at the solution.
+
+@inner_kernel
+def take_update(vehicle, point, step, change, first, tolerance):
+    """Take the update that `find_update` found: whether the equations are then solved, open or lost.
+
+    `tolerance` is the allowed local error; the `first` update tells nothing of how fast the next ones shrink. Loads,
+    and the bodies' accelerations, speeds and places are at the solution where it is reached.
     """
-    control, radius = model.control, model.wagon.wheel_radius
-    size_before = load_before = 0.0
-    for i in range(WHEELS):
-        if locked[i]:
-            point.a[WHEEL_SPIN + i] = 0.0
-    for iteration in range(MOST_NEWTON):
-        work[NEWTON] += 1
-        along_gap = _contact_gaps(model, scratch, base, point, locked, step, torque)
-        _linearise(model, scratch, locked, step)
-        change = _solve_changes(model, scratch, locked, step, along_gap)
-        _change_inputs(scratch, locked, radius, step, change)
-        for i in range(BODIES):
-            point.a[i] = _body_acceleration(scratch, i)
-        size, load_size, crossed = abs(change) / control.speed_scale[0], 0.0, False
-        for i in range(WHEELS):
-            point.normal[i] += scratch.load_change[i]
-            load_size = max(load_size, abs(scratch.load_change[i]))
-            size = max(size, abs(scratch.spin_change[i]) / control.speed_scale[WHEEL_SPIN + i])
-            crossed = _turn_spin(scratch, base, point, i, radius, step) or crossed
-        if not size + load_size < 1e12:
-            return False
-        # Newton's updates shrink ever faster: the next is at most this one times its ratio to the last
-        rate = min(size / size_before, 1.0) if iteration > 0 and size_before > 0.0 else 1.0
-        load_rate = min(load_size / load_before, 1.0) if iteration > 0 and load_before > 0.0 else 1.0
-        small = rate * size * max(step, 1e-6) <= NEWTON_SHARE * control.local_tolerance
-        if small and not crossed and load_rate * load_size <= LOAD_SHARE * control.load_scale:
-            for i in range(COORDINATES):
-                point.q[i] = base.q[i] + step * step * point.a[i]
-                point.v[i] = base.v[i] + step * point.a[i]
-            return True
-        size_before, load_before = size, load_size
-    return False
+    wagon, scratch, scales, base = vehicle.wagon, vehicle.scratch, vehicle.scales, vehicle.points[BASE]
+    _change_inputs(vehicle, step, change)
+    _respond_bodies(scratch, point.a)
+    size, load_size, crossed = abs(change) / scales.speed[0], 0.0, False
+    for i in range(wagon.wheels):
+        point.normal[i] += scratch.load_change[i]
+        load_size = max(load_size, abs(scratch.load_change[i]))
+        size = max(size, abs(scratch.spin_change[i]) / scales.speed[wagon.first_spin + i])
+        crossed = _turn_spin(vehicle, base, point, i, step) or crossed
+    if not size + load_size < 1e12:
+        return LOST
+    # Newton's updates shrink ever faster: the next is at most this one times its ratio to the last
+    size_before, load_before = scratch.size_before, scratch.load_size_before
+    rate = min(size / size_before, 1.0) if not first and size_before > 0.0 else 1.0
+    load_rate = min(load_size / load_before, 1.0) if not first and load_before > 0.0 else 1.0
+    scratch.size_before, scratch.load_size_before = size, load_size
+    small = rate * size * max(step, 1e-6) <= _NEWTON_SHARE * tolerance
+    if not small or crossed or load_rate * load_size > _LOAD_SHARE * scales.load:
+        return OPEN
+    q, v, a, base_q, base_v = point.q, point.v, point.a, base.q, base.v
+    for i in range(q.size):
+        q[i] = base_q[i] + step * step * a[i]
+        v[i] = base_v[i] + step * a[i]
+    return SOLVED
 
 
 @inner_kernel
-def _change_inputs(scratch, locked, radius, step, along):
-    """Add the changes that `_solve_changes` found to the wagon's inputs; `along` is that of the acceleration."""
-    inputs = scratch.inputs
-    inputs[PUSH_INPUT] -= step * scratch.resistance_slope[0] * along
-    for i in range(WHEELS):
+def _change_inputs(vehicle, step, along):
+    """Add the changes that `solve_changes` found to the inputs; `along` is that of the acceleration."""
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    inputs, push = scratch.inputs, wagon.wheels
+    inputs[push] -= step * scratch.resistance_slope * along
+    for i in range(wagon.wheels):
         inputs[i] += scratch.load_change[i]
-        inputs[PUSH_INPUT] -= scratch.creep_change[i]
-        if locked[i]:
-            inputs[BOGIE_INPUT + i // 2] += radius * scratch.creep_change[i]
+        inputs[push] -= scratch.creep_change[i]
+        turn = scratch.turn_gain[i] * scratch.creep_change[i] + scratch.turn_by_gap[i] * scratch.spin_gap[i]
+        if turn != 0.0:
+            inputs[_frame_input(wagon, i)] += turn
 
 
 @inner_kernel
-def respond(model, scratch, locked, step, accelerations):
-    """Add to the free `accelerations` (15,) what the contacts answer to `scratch.load_gap`, `scratch.spin_gap`."""
-    along = _solve_changes(model, scratch, locked, step, accelerations[0])
-    fill(scratch.inputs, 0.0)
-    _change_inputs(scratch, locked, model.wagon.wheel_radius, step, along)
-    for i in range(BODIES):
-        for k in range(INPUTS):
-            accelerations[i] += scratch.response[k, i] * scratch.inputs[k]
-    for i in range(WHEELS):
-        accelerations[WHEEL_SPIN + i] = scratch.spin_change[i]
+def respond(vehicle, step, accelerations):
+    """Add to the bodies' free `accelerations` (coordinates,) what the contacts answer to `scratch.load_gap` and
+    `scratch.spin_gap`; those of the spins follow."""
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    response, inputs = scratch.response, scratch.inputs
+    along = solve_changes(vehicle, step, accelerations[0])
+    fill(inputs, 0.0)
+    _change_inputs(vehicle, step, along)
+    for i in range(wagon.first_spin):
+        for k in range(inputs.size):
+            accelerations[i] += response[k, i] * inputs[k]
+    for i in range(wagon.wheels):
+        accelerations[wagon.first_spin + i] = scratch.spin_change[i]
+
+
+@inner_kernel
+def compliance(vehicle, step, accelerations):
+    """Accelerations (coordinates,) per newton of coupling force at a stage of implicit `step` (s), its contacts closed.
+
+    The stage's accelerations are those without a coupling force and this times the force, as long as the contacts keep
+    their slopes: a train's couplings then see a vehicle as one number.
+    """
+    wagon, scratch = vehicle.wagon, vehicle.scratch
+    unit = scratch.response[scratch.response.shape[0] - 1]
+    fill(accelerations, 0.0)
+    for i in range(wagon.first_spin):
+        accelerations[i] = unit[i]
+    for i in range(wagon.wheels):
+        scratch.load_gap[i] = -step * step * scratch.normal_slope[i] * unit[wagon.first_wheel + i]
+        scratch.spin_gap[i] = 0.0
+    respond(vehicle, step, accelerations)

@@ -12,17 +12,15 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver import excite_kernels
-from slosh_cli.tank.coefficients import SloshLiquid, SloshTank, slosh_modes
+from slosh_cli.tank.coefficients import SloshLiquid, SloshMode, SloshTank, slosh_modes
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.modal import ModalLiquid, modal_liquid
+from slosh_cli.tank.modal import modal_liquid
 from slosh_cli.tank.shallow import WORK_ROWS
 from slosh_cli.tank.still import FlowingLiquid, TransverseWall, shallow_liquid
-
-Array = NDArray[np.float64]
 
 WHOLE = 1.0
 """Share of the tank that is modelled: all of it, where a wagon has half of it on each rail."""
@@ -42,8 +40,8 @@ class Deceleration:
     twice is a jump. Raises ValueError where these rules are broken.
     """
 
-    times: Array
-    values: Array
+    times: Vector
+    values: Vector
 
     def __post_init__(self) -> None:
         if self.times.ndim != 1 or self.times.shape != self.values.shape or not self.times.size:
@@ -65,15 +63,15 @@ class Deceleration:
         times, values = np.array(points, dtype=np.float64).reshape(-1, 2).T
         return cls(times, values)
 
-    def after(self, instants: Array) -> Array:
+    def after(self, instants: Vector) -> Vector:
         """Values in m/s^2 at `instants` (s), just after a jump where there is one."""
         return self._at(instants, "right")
 
-    def before(self, instants: Array) -> Array:
+    def before(self, instants: Vector) -> Vector:
         """The same just before a jump."""
         return self._at(instants, "left")
 
-    def speed_lost(self, instants: Array) -> Array:
+    def speed_lost(self, instants: Vector) -> Vector:
         """Integral in m/s up to `instants` (s)."""
         times, values = self.times, self.values
         sums = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(times) * (values[1:] + values[:-1]))])
@@ -88,7 +86,7 @@ class Deceleration:
         inside = np.abs(self.values[(self.times >= 0.0) & (self.times <= duration)])
         return float(np.max([*inside, *np.abs(self.after(ends)), *np.abs(self.before(ends[1:]))]))
 
-    def _at(self, instants: Array, side: str) -> Array:
+    def _at(self, instants: Vector, side: str) -> Vector:
         times, values = self.times, self.values
         k = np.searchsorted(times, instants, "left" if side == "left" else "right") - 1
         reached, following = np.clip(k, 0, None), np.clip(k + 1, None, times.size - 1)
@@ -110,12 +108,12 @@ class Excitation:
     the other liquids. `reason` says why the history ends early, empty when it does not.
     """
 
-    time: Array
-    deceleration: Array
-    force: Array
-    moment: Array
-    surface_front: Array
-    surface_rear: Array
+    time: Vector
+    deceleration: Vector
+    force: Vector
+    moment: Vector
+    surface_front: Vector
+    surface_rear: Vector
     mass: float
     largest_deceleration: float
     mass_error: float = 0.0
@@ -124,7 +122,7 @@ class Excitation:
     reason: str = ""
 
     @property
-    def normalised_force(self) -> Array:
+    def normalised_force(self) -> Vector:
         """Force over mass times the largest deceleration, (n,)."""
         return self.force / (self.mass * self.largest_deceleration)
 
@@ -134,7 +132,7 @@ class Excitation:
         return extreme(np.concatenate([self.surface_front, self.surface_rear]))
 
 
-def extreme(values: Array) -> float:
+def extreme(values: Vector) -> float:
     """The value of the largest magnitude with its sign, the positive one of two that are equally large."""
     high, low = float(values.max()), float(values.min())
     return low if -low > high else high
@@ -172,7 +170,7 @@ def excite(tank: ExcitedTank, deceleration: Deceleration, duration: float = 40.0
     return _excite_modes(tank, deceleration, time, given, largest)
 
 
-def _instants(deceleration: Deceleration, duration: float, interval: float) -> Array:
+def _instants(deceleration: Deceleration, duration: float, interval: float) -> Vector:
     """Every `interval` from 0 to `duration`, both in, moved onto the deceleration's corners next to them."""
     count = max(math.ceil(duration / interval - 1e-9), 1)
     time = np.arange(count + 1, dtype=np.float64) * interval
@@ -185,7 +183,7 @@ def _instants(deceleration: Deceleration, duration: float, interval: float) -> A
     return time
 
 
-def _with_corners(deceleration: Deceleration, instants: Array) -> Array:
+def _with_corners(deceleration: Deceleration, instants: Vector) -> Vector:
     """`instants` and the deceleration's corners between them, each once, in order."""
     corners = deceleration.times
     inside = corners[(corners > instants[0]) & (corners < instants[-1])]
@@ -193,11 +191,10 @@ def _with_corners(deceleration: Deceleration, instants: Array) -> Array:
 
 
 def _excite_modes(
-    tank: ExcitedTank, deceleration: Deceleration, time: Array, given: Array, largest: float
+    tank: ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
 ) -> Excitation:
     load = frozen_load(tank)
-    liquid = modal_liquid(slosh_modes(tank), STANDARD_GRAVITY, WHOLE)
-    rows, accuracy = _settled_history(liquid, deceleration, time)
+    rows, accuracy = _settled_history(slosh_modes(tank), deceleration, time)
     return Excitation(
         time=time,
         deceleration=given,
@@ -211,24 +208,23 @@ def _excite_modes(
     )
 
 
-def _settled_history(liquid: ModalLiquid, deceleration: Deceleration, time: Array) -> tuple[Array, float]:
+def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, time: Vector) -> tuple[Matrix, float]:
     """Slosh force, moment and front rise (n, 3) at `time`, and their relative change with the last halving.
 
     Histories of steps h and h/2 are combined so that their errors of order h^2 cancel (L. F. Richardson).
     """
-    if not liquid.mu.size:
+    if not modes:
         return np.zeros((time.size, 3)), 0.0
     ends = _with_corners(deceleration, time)
     wanted = np.searchsorted(ends, time)
     lengths, first, last = np.diff(ends), deceleration.after(ends[:-1]), deceleration.before(ends[1:])
-    fastest = math.sqrt(float(np.max(liquid.stiffness / liquid.mu)))
+    fastest = max(mode.frequency for mode in modes)
     steps = np.maximum(np.ceil(lengths * fastest / FIRST_PHASE), 1.0).astype(np.int64)
 
-    def history(halvings: int) -> Array:
+    def history(halvings: int) -> Matrix:
         rows = np.zeros((ends.size, 3))
-        excite_kernels.modal_history(
-            liquid, lengths, first, last, steps * 2**halvings, np.zeros((6, liquid.mu.size)), rows
-        )
+        liquid = modal_liquid(modes, STANDARD_GRAVITY, WHOLE)
+        excite_kernels.modal_history(liquid, lengths, first, last, steps * 2**halvings, rows)
         return rows[wanted]
 
     coarse, fine, halvings = history(0), history(1), 1
@@ -243,7 +239,7 @@ def _settled_history(liquid: ModalLiquid, deceleration: Deceleration, time: Arra
 
 
 def _excite_cells(
-    tank: ExcitedTank, deceleration: Deceleration, time: Array, given: Array, largest: float
+    tank: ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
 ) -> Excitation:
     liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, WHOLE, columns=True)
     borders = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])

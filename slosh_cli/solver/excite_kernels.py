@@ -3,77 +3,63 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from slosh_cli.compiled import kernel
-from slosh_cli.solver.method import DIAGONAL, GAMMA, OUTER
-from slosh_cli.tank.modal import ModalLiquid, liquid_follow, liquid_force, surface_rise
+from slosh_cli.arrays import Integers, Matrix, Vector
+from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.method import BASE, DIAGONAL, END, GAMMA, MIDDLE, OUTER, START
+from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.shallow import ShallowLiquid, liquid_evolve
-from slosh_cli.track.vectors import fill
-
-Array = NDArray[np.float64]
+from slosh_cli.vectors import fill
 
 
-@kernel
-def _swing(liquid, amplitude, rate, second, work, step, deceleration, slope):
+@inner_kernel
+def _swing(liquid, step, deceleration, slope):
     """One step (s) of TR-BDF2, as the wagon's `take_step` does it; the deceleration (m/s^2) has a `slope` (m/s^3)."""
-    base, base_rate, middle = work[3], work[4], work[5]
     implicit = DIAGONAL * step
-    for n in range(amplitude.size):
-        base_rate[n] = rate[n] + implicit * second[n]
-        base[n] = amplitude[n] + implicit * (rate[n] + base_rate[n])
-    tank = -(deceleration + slope * GAMMA * step)
-    liquid_follow(liquid, base, base_rate, implicit, 0.0, tank, 0.0, middle)
-    for n in range(amplitude.size):
-        middle_rate = base_rate[n] + implicit * middle[n]
-        base_rate[n] = rate[n] + OUTER * step * (second[n] + middle[n])
-        base[n] = amplitude[n] + OUTER * step * (rate[n] + middle_rate) + implicit * base_rate[n]
-    tank = -(deceleration + slope * step)
-    liquid_follow(liquid, base, base_rate, implicit, 0.0, tank, 0.0, second)
-    for n in range(amplitude.size):
-        rate[n] = base_rate[n] + implicit * second[n]
-        amplitude[n] = base[n] + implicit * implicit * second[n]
+    liquid.predict(START, implicit, 0.0, implicit)
+    liquid.follow(MIDDLE, BASE, implicit, 0.0, -(deceleration + slope * GAMMA * step), 0.0)
+    liquid.predict(MIDDLE, OUTER * step, OUTER * step, implicit)
+    liquid.follow(END, BASE, implicit, 0.0, -(deceleration + slope * step), 0.0)
+    liquid.accept(step)
 
 
-@kernel
-def _record(liquid, amplitude, second, row):
-    row[0], row[1] = liquid_force(liquid, amplitude, second)
-    row[2] = surface_rise(liquid, amplitude)
+@inner_kernel
+def _record(liquid, row):
+    row[0], row[1] = liquid.force(START)
+    row[2] = liquid.rise(START)
 
 
 @kernel
 def modal_history(
-    liquid: ModalLiquid, lengths: Array, first: Array, last: Array, steps: NDArray[np.int64], work: Array, rows: Array
+    liquid: ModalLiquid, lengths: Vector, first: Vector, last: Vector, steps: Integers, rows: Matrix
 ) -> None:
-    """Modes from rest through stretches of time in which the deceleration is linear.
+    """Modes from where they are through stretches of time in which the deceleration is linear.
 
     Stretch s lasts `lengths[s]` (s), in `steps[s]` steps, from a deceleration `first[s]` to `last[s]` (m/s^2).
     `rows` (stretches + 1, 3) receives slosh force N, moment N m and rise of the surface in front m at their ends, just
-    after a jump where there is one. `work` is (6, modes), zeroed.
+    after a jump where there is one.
     """
-    amplitude, rate, second = work[0], work[1], work[2]
     for s in range(lengths.size):
-        liquid_follow(liquid, amplitude, rate, 0.0, 0.0, -first[s], 0.0, second)
-        _record(liquid, amplitude, second, rows[s])
+        liquid.predict(START, 0.0, 0.0, 0.0)
+        liquid.follow(START, BASE, 0.0, 0.0, -first[s], 0.0)
+        _record(liquid, rows[s])
         step = lengths[s] / steps[s]
         slope = (last[s] - first[s]) / lengths[s]
         for k in range(steps[s]):
-            _swing(liquid, amplitude, rate, second, work, step, first[s] + slope * k * step, slope)
-    _record(liquid, amplitude, second, rows[lengths.size])
+            _swing(liquid, step, first[s] + slope * k * step, slope)
+    _record(liquid, rows[lengths.size])
 
 
 @kernel
 def cells_history(
     liquid: ShallowLiquid,
-    area: Array,
-    flow: Array,
-    depth: Array,
-    lengths: Array,
-    means: Array,
-    work: Array,
-    sums: Array,
-    rows: Array,
+    area: Vector,
+    flow: Vector,
+    depth: Vector,
+    lengths: Vector,
+    means: Vector,
+    work: Matrix,
+    sums: Vector,
+    rows: Matrix,
 ) -> int:
     """Cells through stretches of `lengths` (s) with the mean decelerations `means` (m/s^2); returns how many.
 

@@ -3,59 +3,88 @@
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
-from slosh_cli.solver.cells import cells_energy
-from slosh_cli.solver.contacts import running_resistance
-from slosh_cli.tank.modal import liquid_energy, liquid_loss
+from slosh_cli.method import DIAGONAL, END, MIDDLE, OUTER, START
+from slosh_cli.solver.vehicle import BRAKE, CREEP, FOUNDATION, LOSSES, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
 from slosh_cli.track.moving import rail_ledger
-from slosh_cli.track.vectors import fill
-from slosh_cli.wagon.coordinates import BOGIE_PITCH, CAR_PITCH, COORDINATES, WHEEL_HEAVE, WHEEL_SPIN, WHEELS
+from slosh_cli.vectors import fill
+from slosh_cli.wagon.model import CAR_PITCH
 
-# places in a point's powers and in the work done so far
-BRAKE, CREEP, SUSPENSION, FOUNDATION, RESISTANCE, SLOSH_DAMPING, SLOPE = range(7)
-# places in the stored energies
 KINETIC, ELASTIC, SLOSH = range(3)
+"""Places in the stored energies."""
 
 
 @inner_kernel
-def balance(model, cells, point, energies):
-    """Energies (J) now into `energies` (3,), powers (W) into `point.power` (7,); `cells` as they are at the point."""
-    wagon = model.wagon
+def balance(vehicle, stage, energies):
+    """Energies (J) of a vehicle at a stage into `energies` (3,), powers (W) into its point's `power` (7,)."""
+    wagon, point, ride = vehicle.wagon, vehicle.points[stage], vehicle.ride
+    mass, stiffness, damping, weight = wagon.mass, wagon.stiffness, wagon.damping, wagon.weight
     q, v, power = point.q, point.v, point.power
-    speed = v[0]
-    kinetic = elastic = gravity = loss = tank_speed = 0.0
-    for i in range(COORDINATES):
-        momentum = force = damping = 0.0
-        for j in range(COORDINATES):
-            momentum += wagon.mass[i, j] * v[j]
-            force += wagon.stiffness[i, j] * q[j]
-            damping += wagon.damping[i, j] * v[j]
+    kinetic = elastic = gravity = loss = 0.0
+    for i in range(q.size):
+        momentum = force = damped = 0.0
+        for j in range(q.size):
+            momentum += mass[i, j] * v[j]
+            force += stiffness[i, j] * q[j]
+            damped += damping[i, j] * v[j]
         kinetic += 0.5 * v[i] * momentum
         elastic += 0.5 * q[i] * force
-        loss += v[i] * damping
-        gravity -= wagon.weight[i] * q[i]
-        tank_speed += wagon.tank_row[i] * v[i]
+        loss += v[i] * damped
+        gravity -= weight[i] * q[i]
     tilt = 0.5 * wagon.gravity_stiffness * q[CAR_PITCH] * q[CAR_PITCH]
-    rail_kinetic, rail_elastic, foundation = rail_ledger(model.rail, point.rail, point.rail_rate, speed)
-    slosh_kinetic, slosh_potential = liquid_energy(
-        model.liquid, point.slosh, point.slosh_rate, tank_speed, q[CAR_PITCH], v[CAR_PITCH]
-    )
+    rail_kinetic, rail_elastic, foundation = rail_ledger(vehicle.rail, point.rail, point.rail_rate, v[0])
+    slosh_kinetic, slosh_potential, slosh_loss = vehicle.liquid.energy(ride, stage)
     fill(power, 0.0)
-    slopes = point.rail.size // 2
-    contact_energy = 0.0
-    for i in range(WHEELS):
-        spin = v[WHEEL_SPIN + i]
-        power[BRAKE] += point.torque[i] * (spin - v[BOGIE_PITCH + 2 * (i // 2)])
+    power[SUSPENSION], power[FOUNDATION], power[SLOSH_DAMPING] = loss, foundation, slosh_loss
+    resistance, _ = vehicle.line.resisting_force(v[0])
+    power[RESISTANCE] = resistance * v[0]
+    energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic
+    energies[ELASTIC] = elastic - tilt + rail_elastic + _balance_contacts(vehicle, point)
+    energies[SLOSH] = gravity + tilt + slosh_potential
+
+
+@inner_kernel
+def _balance_contacts(vehicle, point):
+    """Elastic energy (J) of the contacts; their powers and the brakes' into the point's."""
+    wagon, contact, under = vehicle.wagon, vehicle.contact, vehicle.rail.contact
+    rail, v, power = point.rail, point.v, point.power
+    slopes, speed, energy = rail.size // 2, v[0], 0.0
+    for i in range(wagon.wheels):
+        spin = v[wagon.first_spin + i]
+        power[BRAKE] += point.torque[i] * (spin - v[wagon.frame[i]])
         power[CREEP] += point.creep[i] * (speed - wagon.wheel_radius * spin)
-        under = model.rail.contact[i]
-        power[SLOPE] += point.normal[i] * speed * point.rail[slopes + under]
-        approach = max(point.rail[under] - q[WHEEL_HEAVE + i], 0.0)
-        contact_energy += 0.4 * model.contact.stiffness * approach**2.5
-    resistance, _ = running_resistance(wagon, speed)
-    power[SUSPENSION] = loss
-    power[FOUNDATION] = foundation
-    power[RESISTANCE] = resistance * speed
-    power[SLOSH_DAMPING] = liquid_loss(model.liquid, point.slosh_rate)
-    cells_kinetic, cells_potential = cells_energy(model, cells, point)
-    energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic + cells_kinetic
-    energies[ELASTIC] = elastic - tilt + rail_elastic + contact_energy
-    energies[SLOSH] = gravity + tilt + slosh_potential + cells_potential
+        power[SLOPE] += point.normal[i] * speed * rail[slopes + under[i]]
+        energy += contact.energy(contact.approach(rail[under[i]], point.q[wagon.first_wheel + i]))
+    return energy
+
+
+@inner_kernel
+def settle_losses(vehicle, step):
+    """Add the losses of a `step` (s) that is accepted, with the method's own weights."""
+    account, points = vehicle.account, vehicle.points
+    losses, before = account.losses, account.losses_before
+    start, middle, end = points[START].power, points[MIDDLE].power, points[END].power
+    for k in range(LOSSES):
+        before[k] = losses[k]
+        losses[k] += step * (OUTER * (start[k] + middle[k]) + DIAGONAL * end[k])
+    losses[SLOSH_DAMPING] += vehicle.liquid.taken()
+
+
+@inner_kernel
+def stored(energies):
+    """What is stored, J."""
+    return energies[KINETIC] + energies[ELASTIC] + energies[SLOSH]
+
+
+@inner_kernel
+def settle_residual(train):
+    """What the ledgers of all vehicles miss after a step, over the initial kinetic energy."""
+    vehicles, total = train.vehicles, -train.total_start
+    for k in range(len(vehicles)):
+        energies, losses = vehicles[k].account.energies, vehicles[k].account.losses
+        total += stored(energies)
+        for loss in range(BRAKE, SLOPE):
+            total += losses[loss]
+        total -= losses[SLOPE]
+    train.residual_before = train.residual
+    train.residual = total / train.initial_kinetic
+    train.largest_residual = max(train.largest_residual, abs(train.residual))

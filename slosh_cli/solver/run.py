@@ -9,13 +9,14 @@ from typing import Protocol
 
 import numpy as np
 
+from slosh_cli.arrays import Cube
+from slosh_cli.method import START
 from slosh_cli.solver import advance as loop
-from slosh_cli.solver.events import EVENT_COUNT
-from slosh_cli.solver.ledger import FOUNDATION
-from slosh_cli.solver.problem import Array
-from slosh_cli.solver.record import SLOSH_COLUMN, record_row
+from slosh_cli.solver.record import columns_of
 from slosh_cli.solver.setup import Problem
-from slosh_cli.solver.state import INITIAL_KINETIC, NEXT_OUTPUT, PHASE, ROWS, TIME, State, new_scratch, new_state
+from slosh_cli.solver.train import Train
+from slosh_cli.solver.vehicle import FOUNDATION
+from slosh_cli.tank.cells import CellLiquid
 
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
@@ -26,8 +27,6 @@ NODES_PER_CELL = 8
 """Rail nodes that take the time of a cell of the liquid, more or less."""
 MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
-FIRST_STEP = 1e-3
-"""First step to try, s."""
 RINGING = loop.NOT_FINITE + 1
 """Outcome of a stop whose wheels landed on a track that did not take what they put into it."""
 SWALLOWED = 0.5
@@ -48,72 +47,77 @@ class Cancelled(Exception):  # noqa: N818  (not an error: somebody asked for it)
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Raw outcome: the record (rows, columns of `record`), the final state, how it ended, seconds of solving."""
+    """Raw outcome: rows (rows, vehicles, columns of `record`), the final state, how it ended, seconds of solving."""
 
-    rows: Array
-    state: State
+    rows: Cube
+    train: Train
     outcome: int
     seconds: float
 
 
 def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel | None = None) -> Run:
     """Run the stop to its end. Raises Cancelled when `cancel` is set before that."""
-    model, modes = problem.model, problem.start.slosh.size
-    state = new_state(problem.start, problem.cells, EVENT_COUNT, FIRST_STEP)
-    scratch = new_scratch(model.rail, modes, problem.cells.area.size)
-    buffer = np.empty((_most_rows(problem), SLOSH_COLUMN + 2 * modes))  # pages that stay empty cost nothing
-    filled: list[Array] = []
-    outcome = loop.RUNNING if loop.begin(model, scratch, state) else loop.UNSOLVED
-    loop.advance(model, scratch, state, buffer, 0)  # loads or compiles the machine code before the clock starts
+    train = problem.train
+    buffer, steps = _buffer(train), max(WORK_PER_CALL // _work_per_step(train), 10)
+    filled: list[Cube] = []
+    outcome = loop.advance(train, buffer, 0)  # loads or compiles the machine code before the clock starts
     began = time.perf_counter()
-    steps = max(WORK_PER_CALL // (model.rail.nodes + NODES_PER_CELL * problem.cells.area.size), 10)
     while outcome in (loop.RUNNING, loop.ROWS_FULL):
-        outcome = loop.advance(model, scratch, state, buffer, steps)
+        outcome = loop.advance(train, buffer, steps)
         if outcome == loop.ROWS_FULL:
-            filled.append(buffer[: state.counts[ROWS]].copy())
-            state.counts[ROWS] = 0
+            filled.append(buffer[: train.rows].copy())
+            train.rows = 0
         if cancel is not None and cancel.is_set():
             raise Cancelled
         if progress is not None:
-            progress(_fraction(problem, state), float(state.start.v[0]))
+            progress(_fraction(train), _speed(train))
     seconds = time.perf_counter() - began
-    _record_end(problem, state, buffer)
-    if outcome == loop.STOPPED and _is_ringing(problem, state):
+    _record_end(train, buffer)
+    if outcome == loop.STOPPED and _is_ringing(problem):
         outcome = RINGING
-    rows = buffer[: state.counts[ROWS]]
-    return Run(np.concatenate([*filled, rows]) if filled else rows, state, outcome, seconds)
+    rows = buffer[: train.rows]
+    return Run(np.concatenate([*filled, rows]) if filled else rows, train, outcome, seconds)
 
 
-def _most_rows(problem: Problem) -> int:
-    """Rows to make room for at once: all up to the time limit, or many steps' worth."""
-    control = problem.model.control
+def _work_per_step(train: Train) -> int:
+    """Rail nodes of all vehicles, and what takes the time of as many."""
+    cells = sum(v.liquid.shallow.cells for v in train.vehicles if isinstance(v.liquid, CellLiquid))
+    return sum(vehicle.rail.nodes for vehicle in train.vehicles) + NODES_PER_CELL * cells
+
+
+def _buffer(train: Train) -> Cube:
+    """Rows to make room for at once: all up to the time limit, or many steps' worth; empty pages cost nothing."""
+    control = train.control
     per_step = int(control.longest_step / control.interval) + 3
-    return max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, MOST_ROWS))
+    rows = max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, MOST_ROWS))
+    return np.empty((rows, len(train.vehicles), max(columns_of(vehicle).end for vehicle in train.vehicles)))
 
 
-def _record_end(problem: Problem, state: State, buffer: Array) -> None:
+def _record_end(train: Train, buffer: Cube) -> None:
     """Add the end of the run as a row of its own, unless an output instant coincides with it."""
-    now, interval = state.clock[TIME], problem.model.control.interval
-    if abs(state.clock[NEXT_OUTPUT] - interval - now) < 1e-9 * max(interval, now):
-        return
-    record_row(problem.model, state, buffer[state.counts[ROWS]], now, 1.0, 0.0, state.counts[PHASE])
-    state.counts[ROWS] += 1
+    interval = train.control.interval
+    if abs(train.next_output - interval - train.time) >= 1e-9 * max(interval, train.time):
+        loop.record(train, buffer, 1.0, 0.0)
 
 
-def _is_ringing(problem: Problem, state: State) -> bool:
+def _speed(train: Train) -> float:
+    return float(sum(share * v.points[START].v[0] for share, v in zip(train.shares, train.vehicles, strict=True)))
+
+
+def _is_ringing(problem: Problem) -> bool:
     """Whether waves of landing wheels stayed in the rail until steps too long for them took their energy.
 
     Without damping they run to and fro between the domain's ends, ever shorter, and shake the wheels that made them.
     An L-stable method takes the energy of those too short for its steps, so that the ledger misses it, and the distance
     goes on changing with the tolerance (seen: with a million steps still as much as with ten thousand).
     """
-    missing = -float(state.residual[1])
-    absorbed = float(state.losses[FOUNDATION] / state.clock[INITIAL_KINETIC])
-    return bool(state.lifted[0]) and missing > max(problem.most_missing, SWALLOWED * absorbed)
+    train = problem.train
+    absorbed = sum(vehicle.account.losses[FOUNDATION] for vehicle in train.vehicles) / train.initial_kinetic
+    lifted = any(vehicle.account.lifted for vehicle in train.vehicles)
+    return bool(lifted and -train.residual > max(problem.most_missing, SWALLOWED * absorbed))
 
 
-def _fraction(problem: Problem, state: State) -> float:
+def _fraction(train: Train) -> float:
     """How far the run has come: by speed lost or by time, whichever is further."""
-    control = problem.model.control
-    by_speed = 1.0 - float(state.start.v[0]) / float(control.speed_scale[0])
-    return min(max(by_speed, float(state.clock[TIME]) / control.time_limit, 0.0), 1.0)
+    by_speed = 1.0 - _speed(train) / float(train.vehicles[0].scales.speed[0])
+    return min(max(by_speed, train.time / train.control.time_limit, 0.0), 1.0)

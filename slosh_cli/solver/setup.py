@@ -7,43 +7,38 @@ from functools import lru_cache
 
 import numpy as np
 
+from slosh_cli.arrays import Vector
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario, Track, Wagon
 from slosh_cli.scenario.rail_reach import computed_lengths
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver.initial import initial_point
-from slosh_cli.solver.problem import Array, Cells, Control, Model, Point
+from slosh_cli.solver.train import Control, Train, new_train
+from slosh_cli.solver.vehicle import Liquid, Point, Scales, Vehicle, new_vehicle
+from slosh_cli.tank.cells import CellLiquid, cell_liquid
 from slosh_cli.tank.coefficients import slosh_modes
+from slosh_cli.tank.liquid import FrozenLiquid
 from slosh_cli.tank.load import FrozenLoad, frozen_load
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
-from slosh_cli.tank.still import no_cells, shallow_liquid
+from slosh_cli.tank.still import shallow_liquid
 from slosh_cli.track.contact import contact_model
+from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel, critical_speed, rail_model
-from slosh_cli.wagon.brake import Brake
-from slosh_cli.wagon.coordinates import (
-    BOGIE_HEAVE,
-    BOGIE_PITCH,
-    CAR_HEAVE,
-    CAR_PITCH,
-    COORDINATES,
-    POSITION,
-    WHEEL_HEAVE,
-    WHEEL_SPIN,
-    WHEELS,
-)
-from slosh_cli.wagon.model import GRAVITY, WagonModel, wagon_model, wheel_positions
+from slosh_cli.wagon.brake import StepBrake
+from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION, WagonModel, wagon_model, wheel_positions
 
 HALF = 0.5
 """One rail carries half of the wagon."""
-LOCAL_TOLERANCE_FACTOR = 5.0
+_LOCAL_TOLERANCE_FACTOR = 5.0
 """Local error per step over tolerance^1.5; with order 2 the distance error then goes as the tolerance itself."""
-VERTICAL_SHARE = 32.0
+_VERTICAL_SHARE = 32.0
 """Heave and pitch may err this much more, beside their own scales, than the speed beside V0: they move the distance
 little, and at the default tolerance wheel loads still come out within a few tenths of a per cent."""
-LONGEST_STEP = 0.25
+_LONGEST_STEP = 0.25
 """No step is longer than this, s: wheel loads are looked at often enough not to miss their extremes."""
-
-
-SLOWING = 2.2
+_FIRST_STEP = 1e-3
+"""First step to try, s."""
+_SLOWING = 2.2
 """No step takes more of V0 than this times the root of the tolerance.
 
 The local error, one of speeds, does not see the path. Where the deceleration a grows by da, as it does under locked
@@ -51,57 +46,83 @@ wheels, a step h leaves out `0.040 h^2 da` of it and `0.121 h^2 a da` of a unit 
 and b A c + b c^2 - 1/2). With a h within the bound that adds up to less than the tolerance of the initial energy, as
 Polach's friction grows by a factor of 2.3 at most.
 """
-
-
-LEAST_MISSING = 1e-4
+_LEAST_MISSING = 1e-4
 """A track that damps leaves a quarter of this at the default tolerance (seen), or of a third of a coarser tolerance."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
-    """A stop ready to integrate: its constants and its state at t = 0 (accelerations still open)."""
+    """A stop ready to integrate: its train at t = 0, with accelerations still open."""
 
-    model: Model
-    start: Point
-    cells: Cells
-    static_loads: Array
-    """Wheel loads at t = 0, N, (4,)."""
+    train: Train
+    static_loads: Vector
+    """Wheel loads of the wagon at t = 0, N, (wheels,)."""
     most_missing: float
     """What the ledger may miss where wheels land, as a part of the initial kinetic energy."""
 
     @property
+    def vehicle(self) -> Vehicle:
+        """The wagon: the train's one vehicle."""
+        return self.train.vehicles[0]
+
+    @property
     def weight(self) -> float:
         """Weight of the half wagon with its load, N."""
-        return -float(self.model.wagon.weight.sum())
+        wagon = self.vehicle.wagon
+        return -float(wagon.weight[wagon.heaves].sum())
 
 
 def problem(scenario: Scenario) -> Problem:
     """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
+    vehicle = _vehicle(scenario)
+    most_missing = max(_LEAST_MISSING, scenario.solver.tolerance / 3)
+    train = new_train((vehicle,), _control(scenario), _FIRST_STEP)
+    return Problem(train, vehicle.points[0].normal.copy(), most_missing)
+
+
+def _vehicle(scenario: Scenario) -> Vehicle:
+    """The wagon of `scenario` at t = 0."""
     load = frozen_load(scenario.tank)
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
-    liquid = modal_liquid(slosh_modes(scenario.tank), GRAVITY, HALF)
+    liquid = _liquid(scenario, wagon)
     rail = _rail(_computed_track(scenario), tuple(wheel_positions(scenario.wagon)))
     contact = contact_model(scenario.contact, wagon.wheel_radius)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
-    start = initial_point(wagon, rail, contact, scenario.braking.initial_speed, liquid.mu.size)
-    shallow, cells = shallow_liquid(scenario.tank, GRAVITY, HALF) if flowing else no_cells()
-    turn = np.zeros(COORDINATES)
-    turn[CAR_PITCH] = 1.0
-    model = Model(
-        wagon=wagon,
-        liquid=liquid,
-        rail=rail,
-        contact=contact,
-        brake=Brake(scenario.braking.torque, scenario.braking.onset),
-        control=_control(scenario, wagon, liquid, start, contact.stiffness),
-        shallow=shallow,
-        tank_push=np.asarray(np.linalg.solve(wagon.mass, wagon.tank_row), dtype=np.float64),
-        tank_turn=np.asarray(np.linalg.solve(wagon.mass, turn), dtype=np.float64),
+    start = initial_point(wagon, rail, contact, scenario.braking.initial_speed)
+    resistance = scenario.wagon.running_resistance
+    return new_vehicle(
+        wagon,
+        liquid,
+        rail,
+        contact,
+        Line(resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic])),
+        StepBrake.blank(full=scenario.braking.torque, onset=scenario.braking.onset),
+        _scales(scenario, wagon, liquid, start),
+        start,
     )
-    most_missing = max(LEAST_MISSING, scenario.solver.tolerance / 3)
-    return Problem(model, start, Cells(*cells), start.normal.copy(), most_missing)
+
+
+def _liquid(scenario: Scenario, wagon: WagonModel) -> Liquid:
+    """The moving part of the load, at rest."""
+    if scenario.tank.liquid.model == "shallow-water":
+        return _cells(scenario, wagon)
+    modes = slosh_modes(scenario.tank)
+    return modal_liquid(modes, STANDARD_GRAVITY, HALF) if modes else FrozenLiquid.blank()
+
+
+def _cells(scenario: Scenario, wagon: WagonModel) -> CellLiquid:
+    shallow, columns = shallow_liquid(scenario.tank, STANDARD_GRAVITY, HALF)
+    at_centre = wagon.tank_row.copy()
+    at_centre[CAR_PITCH] += shallow.centre_height
+    return cell_liquid(
+        shallow,
+        columns,
+        by_force=float(at_centre @ wagon.tank_push),
+        by_moment=float(at_centre @ wagon.tank_turn),
+        along_by_force=float(wagon.tank_push[POSITION]),
+    )
 
 
 @lru_cache(maxsize=16)
@@ -125,16 +146,13 @@ def _computed_track(scenario: Scenario) -> Track:
     return track.model_copy(update={"domain": track.domain.model_copy(update=domain)})
 
 
-def _check_mass_matrix(wagon: WagonModel, liquid: ModalLiquid) -> None:
+def _check_mass_matrix(wagon: WagonModel, liquid: Liquid) -> None:
     """Refuse slosh coefficients whose kinetic energy could be negative."""
-    modes = liquid.mu.size
-    mass = np.zeros((COORDINATES + modes, COORDINATES + modes))
-    mass[:COORDINATES, :COORDINATES] = wagon.mass
-    for n in range(modes):
-        row = liquid.lambda_1[n] * wagon.tank_row
-        row[CAR_PITCH] += liquid.lambda_02[n]
-        mass[COORDINATES + n, :COORDINATES] = mass[:COORDINATES, COORDINATES + n] = row
-        mass[COORDINATES + n, COORDINATES + n] = liquid.mu[n]
+    if not isinstance(liquid, ModalLiquid):
+        return
+    rows = np.outer(liquid.lambda_1, wagon.tank_row)
+    rows[:, CAR_PITCH] += liquid.lambda_02
+    mass = np.block([[wagon.mass, rows.T], [rows, np.diag(liquid.mu)]])
     size = np.sqrt(np.diag(mass))
     if np.linalg.eigvalsh(mass / np.outer(size, size))[0] <= 0:
         raise PhysicsError(
@@ -154,41 +172,36 @@ def _check_speed(scenario: Scenario, rail: RailModel) -> None:
         )
 
 
-def _scales(scenario: Scenario, sag: Array) -> tuple[Array, Array]:
-    """Scales of velocities and places (15,) each, from V0 and from how far the wagon sags (m) under its weight."""
-    speeds = np.full(COORDINATES, scenario.braking.initial_speed)
-    speeds[WHEEL_SPIN:] /= scenario.wagon.wheelset.wheel_radius
-    places = np.full(COORDINATES, np.inf)
-    heaves = [CAR_HEAVE, BOGIE_HEAVE, BOGIE_HEAVE + 2, *range(WHEEL_HEAVE, WHEEL_HEAVE + WHEELS)]
-    places[heaves] = np.abs(sag[heaves])
-    arms = {CAR_PITCH: scenario.wagon.pivot_spacing, BOGIE_PITCH: scenario.wagon.bogie.wheelbase}
-    for pitch, arm in arms.items():
-        places[pitch] = np.abs(sag[pitch - 1]) / (0.5 * arm)
-    places[BOGIE_PITCH + 2] = places[BOGIE_PITCH]
-    speeds[heaves] = np.sqrt(GRAVITY * places[heaves])
-    for pitch, heave in ((CAR_PITCH, CAR_HEAVE), (BOGIE_PITCH, BOGIE_HEAVE), (BOGIE_PITCH + 2, BOGIE_HEAVE + 2)):
-        speeds[pitch] = places[pitch] * speeds[heave] / places[heave]
-    speeds[1:WHEEL_SPIN] *= VERTICAL_SHARE
-    places *= VERTICAL_SHARE
-    return speeds, places
+def _scales(scenario: Scenario, wagon: WagonModel, liquid: Liquid, start: Point) -> Scales:
+    """Scales of velocities and places from V0 and from how far the wagon sags at the `start` under its weight."""
+    speeds = np.full(wagon.coordinates, scenario.braking.initial_speed)
+    speeds[wagon.first_spin :] /= wagon.wheel_radius
+    places = np.full(wagon.coordinates, np.inf)
+    heaves, sag = wagon.heaves, np.abs(start.q)
+    places[heaves] = sag[heaves]
+    speeds[heaves] = np.sqrt(STANDARD_GRAVITY * places[heaves])
+    arms = {CAR_HEAVE: scenario.wagon.pivot_spacing}
+    arms |= dict.fromkeys(range(FIRST_BOGIE, wagon.first_wheel, 2), scenario.wagon.bogie.wheelbase)
+    for heave, arm in arms.items():
+        places[heave + 1] = sag[heave if heave == CAR_HEAVE else FIRST_BOGIE] / (0.5 * arm)
+        speeds[heave + 1] = places[heave + 1] * speeds[heave] / places[heave]
+    speeds[1 : wagon.first_spin] *= _VERTICAL_SHARE
+    places *= _VERTICAL_SHARE
+    coupling = float(np.abs(liquid.lambda_1).max(initial=1.0)) if isinstance(liquid, ModalLiquid) else 1.0
+    return Scales(
+        speed=speeds,
+        place=places,
+        slosh=scenario.braking.initial_speed * float(wagon.mass[POSITION, POSITION]) / coupling,
+        load=float(start.normal.mean()),
+    )
 
 
-def _control(
-    scenario: Scenario, wagon: WagonModel, liquid: ModalLiquid, start: Point, contact_stiffness: float
-) -> Control:
-    speed_scale, place_scale = _scales(scenario, start.q)
-    load = float(start.normal.mean())
-    coupling = float(np.abs(liquid.lambda_1).max(initial=1.0))
+def _control(scenario: Scenario) -> Control:
     return Control(
-        local_tolerance=LOCAL_TOLERANCE_FACTOR * scenario.solver.tolerance**1.5,
-        speed_scale=speed_scale,
-        place_scale=place_scale,
-        slosh_scale=scenario.braking.initial_speed * float(wagon.mass[POSITION, POSITION]) / coupling,
-        load_scale=load,
-        approach_scale=(load / contact_stiffness) ** (2 / 3),
+        local_tolerance=_LOCAL_TOLERANCE_FACTOR * scenario.solver.tolerance**1.5,
         stop_speed=scenario.braking.stop_speed,
         time_limit=scenario.solver.time_limit,
-        longest_step=LONGEST_STEP,
-        most_slowing=SLOWING * float(np.sqrt(scenario.solver.tolerance)) * scenario.braking.initial_speed,
+        longest_step=_LONGEST_STEP,
+        most_slowing=_SLOWING * float(np.sqrt(scenario.solver.tolerance)) * scenario.braking.initial_speed,
         interval=scenario.output.interval,
     )

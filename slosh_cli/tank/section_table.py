@@ -7,15 +7,13 @@ Wegner, La Houille Blanche 1 (1964) 33-39.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Integers, Vector
+from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
 from slosh_cli.tank.section import PolygonalSection, Section
 
-Array = NDArray[np.float64]
 NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""
 BINS = 1024
@@ -24,7 +22,7 @@ LEDGE = 1e-9
 """Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
 
 
-class SectionTable(NamedTuple):
+class SectionTable(Block):
     """Section at the depths (K,) m up to where the slot of `slot_width` (m) takes over.
 
     The roof is at `roof` (m); up to there the section holds `full_area` (m^2).
@@ -34,14 +32,14 @@ class SectionTable(NamedTuple):
     node not beyond the start of each of as many equal parts of depth and area.
     """
 
-    depth: Array
-    area: Array
-    width: Array
-    first: Array
-    pressure: Array
-    pressure_arm: Array
-    depth_start: NDArray[np.int64]
-    area_start: NDArray[np.int64]
+    depth: Vector
+    area: Vector
+    width: Vector
+    first: Vector
+    pressure: Vector
+    pressure_arm: Vector
+    depth_start: Integers
+    area_start: Integers
     slot_width: float
     roof: float
     full_area: float
@@ -55,7 +53,7 @@ def _slot_start(section: Section, slot_width: float) -> float:
     return section.height if first == 0 else float(depths[first])
 
 
-def _nodes(section: Section, top: float) -> Array:
+def _nodes(section: Section, top: float) -> Vector:
     """Depths (m) of the table up to `top`; a polygon's corners are among them, so that no interval has one inside."""
     depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, NODES)))
     if not isinstance(section, PolygonalSection):
@@ -67,7 +65,7 @@ def _nodes(section: Section, top: float) -> Array:
     return np.asarray(sorted([0.0, *apart, *corners, top]), dtype=np.float64)
 
 
-def _starts(places: Array) -> NDArray[np.int64]:
+def _starts(places: Vector) -> Integers:
     """Last node not beyond the start of each bin, one bin early so that rounding cannot pass it by."""
     edges = np.linspace(0.0, float(places[-1]), BINS + 1)
     found = np.searchsorted(places, edges, side="right") - 1

@@ -8,17 +8,13 @@ Finite volumes with the fluxes of `shallow_flux`; Heun's method in time. Both wa
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from slosh_cli.arrays import Vector
+from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
 from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import fluxes
-
-Array = NDArray[np.float64]
 
 COURANT = 0.45
 """A step carries no wave further than this part of a cell."""
@@ -33,13 +29,13 @@ FILM = 1e-4
 stays bounded: A. Kurganov and G. Petrova, Comm. Math. Sci. 5 (2007) 133-160, equation 2.17."""
 
 
-class ShallowLiquid(NamedTuple):
-    """Constants of the liquid in a tank cut into `cells` of `spacing` (m); no cells: the liquid is absent.
+class ShallowLiquid(Block):
+    """Constants of the liquid in a tank cut into `cells` of `spacing` (m).
 
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
     liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
-    face, zero where there is none and infinite where it is closed. `columns`: cells that run full up to a wall stand
-    still (`roof`).
+    face, zero where there is none and infinite where it is closed. `columns`: whether cells that run full up to a
+    wall stand still (`roof`).
     """
 
     cells: int
@@ -49,9 +45,9 @@ class ShallowLiquid(NamedTuple):
     centre_height: float
     mass: float
     still_depth: float
-    loss: Array
+    loss: Vector
     table: SectionTable
-    columns: bool = True
+    columns: int
 
 
 @kernel

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
 from itertools import pairwise
 from typing import Protocol
 
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
-from slosh_cli.tank.section import RectangularSection, section_of
+from slosh_cli.tank.section import section_of
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.tank.shallow import ShallowLiquid
 
@@ -79,7 +78,7 @@ def shallow_liquid(
         still_depth=depth,
         loss=_baffle_losses(tank),
         table=section_table(section, gravity, tank.liquid.slot_speed),
-        columns=columns,
+        columns=int(columns),
     )
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
 
@@ -126,11 +125,3 @@ def _baffle_losses(tank: FlowingTank) -> Array:
     for baffle in tank.baffles:
         losses[round(baffle.position / tank.length * tank.liquid.cells)] = baffle_loss(baffle.opening)
     return losses
-
-
-@cache
-def no_cells() -> tuple[ShallowLiquid, CellColumns]:
-    """The absence of a shallow-water liquid, for loads that are frozen or described by modes."""
-    table = section_table(RectangularSection(1.0, 1.0), 1.0, 1.0)
-    liquid = ShallowLiquid(0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, np.zeros(1), table)
-    return liquid, (np.zeros(0), np.zeros(0), np.zeros(0))

@@ -13,11 +13,10 @@ growth (Golub and Van Loan, Matrix Computations, section 4.3.3).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Cube, Matrix, Unsigned
 from slosh_cli.compiled import inner_kernel, kernel, vector_kernel
 
-Array = NDArray[np.float64]
 ENTRIES = 12
 """Entries in the two rows of a node; those of L, D^-1 and U there are as many."""
 FIRST, END, BEFORE, AFTER = range(4)
@@ -92,7 +91,7 @@ def weighed(row, k, sums):
 
 
 @kernel
-def factor_rows(runs: NDArray[np.uint64], rows: Array, factors: Array) -> None:
+def factor_rows(runs: Unsigned, rows: Matrix, factors: Matrix) -> None:
     """Factor the matrix of the first 12 columns of `rows` into L, D^-1 and U with unit diagonals: `factors` (12, n).
 
     Unknowns are eliminated node by node, the deflection first. By node: the deflection's two entries of L, its D^-1,
@@ -140,7 +139,7 @@ def solve_one(factors, right):
 
 
 @vector_kernel
-def solve_four(factors: Array, right: Array) -> None:
+def solve_four(factors: Matrix, right: Cube) -> None:
     """`solve_one` for four right-hand sides `right` (n, 2, 4): deflection and slope of node after node."""
     nodes = factors.shape[1]
     w_1 = w_2 = w_3 = w_4 = s_1 = s_2 = s_3 = s_4 = 0.0

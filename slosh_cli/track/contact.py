@@ -6,11 +6,11 @@ O. Polach, "Creep forces in simulations of traction vehicles running on adhesion
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from slosh_cli.compiled import kernel
+from slosh_cli.blocks import Block
+from slosh_cli.compiled import inner_kernel, kernel
 from slosh_cli.scenario import Contact
 from slosh_cli.track.hertz import hertz_contact
 
@@ -18,7 +18,7 @@ CREEPAGE_SPEED_FLOOR = 0.05
 """Creepage is slip over the larger of train speed and this, m/s (model section 7)."""
 
 
-class ContactModel(NamedTuple):
+class ContactModel(Block):
     """Constants of one wheel-rail contact, SI units.
 
     `stiffness` C_H in N/m^1.5; `creep_factor` is `G pi c11 (a b / N^(2/3)) / 4` in N^(1/3), so that
@@ -32,6 +32,54 @@ class ContactModel(NamedTuple):
     friction_decay: float
     adhesion_reduction: float
     slip_reduction: float
+
+    @inner_kernel
+    def approach(self, rail, heave):
+        """Approach (m) of a wheel at `heave` (m) and the `rail` (m) under it; negative when apart."""
+        return rail - heave
+
+    @kernel
+    def normal_force(self, approach):
+        """Normal force (N) and its derivative (N/m) for an approach (m) of wheel and rail; zero when apart."""
+        closed = max(approach, 0.0)
+        root = math.sqrt(closed)
+        return self.stiffness * closed * root, 1.5 * self.stiffness * root
+
+    @inner_kernel
+    def energy(self, approach):
+        """Elastic energy (J) of the contact, `2/5 C_H delta^(5/2)`."""
+        return 0.4 * self.stiffness * max(approach, 0.0) ** 2.5
+
+    @kernel
+    def creep_force(self, normal, slip, speed):
+        """Longitudinal creep force on the wheel, opposing `slip` (m/s, train speed less circumferential speed).
+
+        Returns the force (N, positive rearwards for positive slip) and its derivatives with respect to the normal
+        force, the slip and the train speed. `|creepage| = |slip| / max(|speed|, floor)`; model section 7.
+        """
+        if normal <= 0.0:
+            return 0.0, 0.0, 0.0, 0.0
+        direction = 1.0 if slip >= 0.0 else -1.0
+        rolling = max(abs(speed), CREEPAGE_SPEED_FLOOR)
+        falling = self.friction * (1.0 - self.friction_limit_ratio) * math.exp(-self.friction_decay * abs(slip))
+        mu = falling + self.friction * self.friction_limit_ratio
+        mu_slope = -self.friction_decay * falling
+        eps_per_slip = self.creep_factor / (mu * rolling * np.cbrt(normal))
+        eps = eps_per_slip * abs(slip)
+        adhesion = self.adhesion_reduction * eps
+        sliding = self.slip_reduction * eps
+        bracket = adhesion / (1.0 + adhesion * adhesion) + math.atan(sliding)
+        bracket_slope = self.adhesion_reduction * (1.0 - adhesion * adhesion) / (
+            1.0 + adhesion * adhesion
+        ) ** 2 + self.slip_reduction / (1.0 + sliding * sliding)
+        scale = 2.0 / math.pi
+        force = scale * mu * normal * bracket
+        by_normal = scale * mu * (bracket - bracket_slope * eps / 3.0)
+        by_slip = scale * normal * (mu_slope * bracket + bracket_slope * (mu * eps_per_slip - eps * mu_slope))
+        by_speed = 0.0
+        if abs(speed) > CREEPAGE_SPEED_FLOOR:
+            by_speed = -scale * mu * normal * bracket_slope * eps / speed
+        return direction * force, direction * by_normal, by_slip, direction * by_speed
 
 
 def contact_model(contact: Contact, wheel_radius: float) -> ContactModel:
@@ -48,43 +96,3 @@ def contact_model(contact: Contact, wheel_radius: float) -> ContactModel:
         adhesion_reduction=adhesion.kA,
         slip_reduction=adhesion.kS,
     )
-
-
-@kernel
-def normal_force(contact, approach):
-    """Normal force (N) and its derivative (N/m) for an approach (m) of wheel and rail; zero when apart."""
-    closed = max(approach, 0.0)
-    root = math.sqrt(closed)
-    return contact.stiffness * closed * root, 1.5 * contact.stiffness * root
-
-
-@kernel
-def creep_force(contact, normal, slip, speed):
-    """Longitudinal creep force on the wheel, opposing `slip` (m/s, train speed less circumferential speed).
-
-    Returns the force (N, positive rearwards for positive slip) and its derivatives with respect to the normal
-    force, the slip and the train speed. `|creepage| = |slip| / max(|speed|, floor)`; model section 7.
-    """
-    if normal <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    direction = 1.0 if slip >= 0.0 else -1.0
-    rolling = max(abs(speed), CREEPAGE_SPEED_FLOOR)
-    falling = contact.friction * (1.0 - contact.friction_limit_ratio) * math.exp(-contact.friction_decay * abs(slip))
-    mu = falling + contact.friction * contact.friction_limit_ratio
-    mu_slope = -contact.friction_decay * falling
-    eps_per_slip = contact.creep_factor / (mu * rolling * np.cbrt(normal))
-    eps = eps_per_slip * abs(slip)
-    adhesion = contact.adhesion_reduction * eps
-    sliding = contact.slip_reduction * eps
-    bracket = adhesion / (1.0 + adhesion * adhesion) + math.atan(sliding)
-    bracket_slope = contact.adhesion_reduction * (1.0 - adhesion * adhesion) / (
-        1.0 + adhesion * adhesion
-    ) ** 2 + contact.slip_reduction / (1.0 + sliding * sliding)
-    scale = 2.0 / math.pi
-    force = scale * mu * normal * bracket
-    by_normal = scale * mu * (bracket - bracket_slope * eps / 3.0)
-    by_slip = scale * normal * (mu_slope * bracket + bracket_slope * (mu * eps_per_slip - eps * mu_slope))
-    by_speed = 0.0
-    if abs(speed) > CREEPAGE_SPEED_FLOOR:
-        by_speed = -scale * mu * normal * bracket_slope * eps / speed
-    return direction * force, direction * by_normal, by_slip, direction * by_speed

@@ -8,31 +8,31 @@ Meth. Engng 56 (2003) 1549-1567). Cubic Hermite elements, nodal unknowns deflect
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Integers, Matrix, Tesseract, Unsigned, Vector
+from slosh_cli.blocks import Block
 from slosh_cli.scenario import Track
 from slosh_cli.track.banded import END, ENTRIES, FIRST, factor_rows, solve_four
 
-Array = NDArray[np.float64]
 MASS, TENSION, DRIFT, BENDING, TWIST, FORMS = range(0, 6 * ENTRIES, ENTRIES)
 """Where each form's entries begin in `RailModel.forms`."""
 
 
-class RailModel(NamedTuple):
+class RailModel(Block):
     """Semi-discrete rail. Unknowns (2 n,): the deflections of all n nodes, then their slopes.
 
     Five forms, one after the other in rows of nodes as `banded` describes them: `forms` (r, 60) for `runs` (r, 4). With
     N the shape functions they are `MASS` INT N N, `TENSION` INT N' N', `DRIFT` INT N N', `BENDING` INT N'' N'', `TWIST`
     INT N' N''. The deflection at either end is held: its rows are zero but for a mass of its own, so that it stays
-    at zero. `contact` (4,) are the nodes under wheels 1 to 4.
+    at zero. `contact` (wheels,) are the nodes under the wheels.
     """
 
-    runs: NDArray[np.uint64]
-    forms: Array
-    contact: NDArray[np.int64]
+    runs: Unsigned
+    forms: Matrix
+    contact: Integers
+    nodes: int
     mass: float  # kg/m
     bending_stiffness: float  # N m^2
     stiffness: float  # N/m^2
@@ -40,13 +40,8 @@ class RailModel(NamedTuple):
     damping: float  # N s/m^2
     shear_damping: float  # N s
 
-    @property
-    def nodes(self) -> int:
-        """Number of nodes."""
-        return int(self.runs[-1, END])
 
-
-def _spans(wheels: Array, length: float, element_length: float) -> tuple[Array, NDArray[np.int64]]:
+def _spans(wheels: Vector, length: float, element_length: float) -> tuple[Vector, Integers]:
     """Ends (m, ascending) of the spans between wheels and domain ends, and their numbers of elements."""
     middle = 0.5 * (wheels.max() + wheels.min())
     fixed = np.concatenate([[middle - 0.5 * length], np.sort(wheels), [middle + 0.5 * length]])
@@ -55,7 +50,7 @@ def _spans(wheels: Array, length: float, element_length: float) -> tuple[Array, 
     return fixed, np.maximum(np.rint(np.diff(fixed) / element_length).astype(np.int64), 1)
 
 
-def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
+def fitted_nodes(wheels: Vector, length: float, element_length: float) -> Vector:
     """Nodes (m, ascending) of a domain of `length` centred on the wheels, one node at every wheel.
 
     Between fixed points the number of elements is the rounded quotient, so elements differ from
@@ -69,7 +64,7 @@ def fitted_nodes(wheels: Array, length: float, element_length: float) -> Array:
     return np.concatenate([*pieces, fixed[-1:]])
 
 
-def _hermite(lengths: Array) -> tuple[Array, Array, Array, Array]:
+def _hermite(lengths: Vector) -> tuple[Vector, Vector, Vector, Vector]:
     """Shape functions, first and second derivatives at 4 Gauss points of each element (4, 4, n); the weights (4, n)."""
     points, weights = np.polynomial.legendre.leggauss(4)
     x = 0.5 * (points + 1)
@@ -81,14 +76,14 @@ def _hermite(lengths: Array) -> tuple[Array, Array, Array, Array]:
     return value, slope, curve, 0.5 * lengths * weights[:, None]
 
 
-def _element_forms(lengths: Array) -> Array:
+def _element_forms(lengths: Vector) -> Vector:
     """The five 4 x 4 matrices of each element in the order of `RailModel`; (5, n, 4, 4)."""
     value, slope, curve, w = _hermite(lengths)
     pairs = ((value, value), (slope, slope), (value, slope), (curve, curve), (slope, curve))
     return np.array([np.einsum("ign,jgn,gn->nij", left, right, w) for left, right in pairs])
 
 
-def _rows(forms: Array, left: int | None, right: int | None) -> Array:
+def _rows(forms: Vector, left: int | None, right: int | None) -> Vector:
     """The rows (60,) of a node between elements of the spans `left` and `right`; without one it is an end."""
     rows = np.zeros((len(forms), 2, 6))
     if left is not None:
@@ -101,8 +96,8 @@ def _rows(forms: Array, left: int | None, right: int | None) -> Array:
     return rows.ravel()
 
 
-def rail_model(track: Track, wheels: Array) -> RailModel:
-    """Assemble the rail under `wheels` (m, positions of wheels 1 to 4 relative to the wagon's centre).
+def rail_model(track: Track, wheels: Vector) -> RailModel:
+    """Assemble the rail under `wheels` (m, their positions relative to the wagon's centre).
 
     Raises ValueError where the wheels do not fit, or a length of the domain is still to be computed.
     """
@@ -126,6 +121,7 @@ def rail_model(track: Track, wheels: Array) -> RailModel:
         runs=runs[filled].astype(np.uint64),
         forms=np.array(forms)[filled],
         contact=contact,
+        nodes=int(runs[filled][-1, END]),
         mass=track.rail.mass_per_length,
         bending_stiffness=track.rail.youngs_modulus * track.rail.second_moment,
         stiffness=foundation.stiffness,
@@ -140,7 +136,7 @@ def critical_speed(rail: RailModel) -> float:
     return float(np.sqrt((rail.shear_stiffness + 2 * np.sqrt(rail.stiffness * rail.bending_stiffness)) / rail.mass))
 
 
-def steady_rows(rail: RailModel, speed: float) -> Array:
+def steady_rows(rail: RailModel, speed: float) -> Vector:
     """Rows (r, 12) of the K of model section 6 at constant `speed` (m/s)."""
     mass, stretch, drift, bend, twist = np.split(rail.forms, FORMS // ENTRIES, axis=1)
     tension = rail.shear_stiffness - rail.mass * speed**2
@@ -153,10 +149,19 @@ def steady_rows(rail: RailModel, speed: float) -> Array:
     )
 
 
-def steady_shapes(rail: RailModel, speed: float) -> Array:
-    """Steady rail shapes (2 n, 4) at constant `speed` (m/s) under a downward unit force at each wheel, m/N."""
-    factors, loads = np.zeros((ENTRIES, rail.nodes)), np.zeros((rail.nodes, 2, rail.contact.size))
-    loads[rail.contact, 0, np.arange(rail.contact.size)] = -1.0
+def steady_shapes(rail: RailModel, speed: float) -> Matrix:
+    """Steady rail shapes (2 n, wheels) at constant `speed` (m/s) under a downward unit force at each wheel, m/N."""
+    factors, loads = np.zeros((ENTRIES, rail.nodes)), unit_loads(rail)
     factor_rows(rail.runs, steady_rows(rail, speed), factors)
-    solve_four(factors, loads)
-    return loads.transpose(1, 0, 2).reshape(2 * rail.nodes, -1)
+    for group in loads:
+        solve_four(factors, group)
+    shapes = -loads.transpose(2, 1, 0, 3).reshape(2 * rail.nodes, -1)
+    return shapes[:, : rail.contact.size]
+
+
+def unit_loads(rail: RailModel) -> Tesseract:
+    """An upward unit force at each wheel: (groups of four wheels, nodes, 2, 4), the last group filled up with zeros."""
+    loads = np.zeros((-(-rail.contact.size // 4), rail.nodes, 2, 4))
+    for wheel, node in enumerate(rail.contact):
+        loads[wheel // 4, node, 0, wheel % 4] = 1.0
+    return loads

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from slosh_cli.arrays import Matrix, Tesseract, Vector
+from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel, vector_kernel
 from slosh_cli.track.banded import (
     AFTER,
@@ -19,7 +21,7 @@ from slosh_cli.track.banded import (
     solve_four,
     weighed,
 )
-from slosh_cli.track.mem import BENDING, DRIFT, MASS, TENSION, TWIST
+from slosh_cli.track.mem import BENDING, DRIFT, MASS, TENSION, TWIST, RailModel, unit_loads
 
 # places in the rows of a rail's matrices
 STAGE, DAMPING, STIFFNESS, MATRICES = range(0, 4 * ENTRIES, ENTRIES)
@@ -28,36 +30,73 @@ STAGE, DAMPING, STIFFNESS, MATRICES = range(0, 4 * ENTRIES, ENTRIES)
 @vector_kernel
 def _matrices(rail, step, speed, acceleration, rows):
     """`M + step C(V) + step^2 K(V, A)`, C(V) and K(V, A) of model section 6 into `rows` (r, 36)."""
-    tension = rail.shear_stiffness - rail.mass * speed * speed
-    drift = -rail.damping * speed - rail.mass * acceleration
-    twice = -2.0 * rail.mass * speed
-    twist = -rail.shear_damping * speed
+    forms, inertia, foundation, bending = rail.forms, rail.mass, rail.stiffness, rail.bending_stiffness
+    loss, shear_loss = rail.damping, rail.shear_damping
+    tension = rail.shear_stiffness - inertia * speed * speed
+    drift = -loss * speed - inertia * acceleration
+    twice = -2.0 * inertia * speed
+    twist = -shear_loss * speed
     for run in range(rows.shape[0]):
-        form, row = rail.forms[run], rows[run]
+        form, row = forms[run], rows[run]
         for k in range(ENTRIES):
             mass, stretch, convection = form[MASS + k], form[TENSION + k], form[DRIFT + k]
-            damping = rail.damping * mass + rail.shear_damping * stretch + twice * convection
-            stiffness = rail.stiffness * mass + tension * stretch + drift * convection
-            stiffness += rail.bending_stiffness * form[BENDING + k] + twist * form[TWIST + k]
-            row[STAGE + k] = rail.mass * mass + step * (damping + step * stiffness)
+            damping = loss * mass + shear_loss * stretch + twice * convection
+            stiffness = foundation * mass + tension * stretch + drift * convection
+            stiffness += bending * form[BENDING + k] + twist * form[TWIST + k]
+            row[STAGE + k] = inertia * mass + step * (damping + step * stiffness)
             row[DAMPING + k], row[STIFFNESS + k] = damping, stiffness
 
 
+class RailWork(Block):
+    """Work space over a rail: nothing in it outlives a step.
+
+    `rows` (r, 36) hold the matrices, `factors` (12, n) those of a stage's; `flexibility` (groups, n, 2, 4) the rail's
+    accelerations per upward newton at each wheel, four wheels to a group; `between` (wheels, wheels) what of them is
+    under the wheels; the rest are vectors (2 n,).
+    """
+
+    rows: Matrix
+    factors: Matrix
+    flexibility: Tesseract
+    between: Matrix
+    missing: Vector
+    error: Vector
+    error_rate: Vector
+    zero: Vector
+
+
+def rail_work(rail: RailModel) -> RailWork:
+    """Work space for `rail`."""
+    return RailWork.blank(
+        2 * rail.nodes,
+        rows=np.zeros((rail.runs.shape[0], MATRICES)),
+        factors=np.zeros((ENTRIES, rail.nodes)),
+        flexibility=unit_loads(rail),
+        between=np.zeros((rail.contact.size, rail.contact.size)),
+    )
+
+
 @kernel
-def prepare_rail(rail, step, speed, acceleration, rows, factors, flexibility):
+def prepare_rail(rail, work, step, speed, acceleration):
     """Factor `M + step C(V) + step^2 K(V, A)` and solve it for a unit force at each wheel.
 
-    `step` (s) is the implicit step, V (m/s) and A (m/s^2) the wagon's. Into `factors` (12, n) go the factors, into
-    `flexibility` (n, 2, 4) the rail's accelerations per upward newton at wheels 1 to 4; `rows` (r, 36) is work space.
+    `step` (s) is the implicit step, V (m/s) and A (m/s^2) the wagon's. The results are in `work`.
     """
-    _matrices(rail, step, speed, acceleration, rows)
-    factor_rows(rail.runs, rows, factors)
-    for i in range(flexibility.shape[0]):
-        for wheel in range(4):
-            flexibility[i, 0, wheel] = flexibility[i, 1, wheel] = 0.0
-    for wheel in range(4):
-        flexibility[rail.contact[wheel], 0, wheel] = 1.0
-    solve_four(factors, flexibility)
+    contact, flexibility, between = rail.contact, work.flexibility, work.between
+    _matrices(rail, step, speed, acceleration, work.rows)
+    factor_rows(rail.runs, work.rows, work.factors)
+    wheels = contact.size
+    for group in range(flexibility.shape[0]):
+        unit = flexibility[group]
+        for i in range(unit.shape[0]):
+            for wheel in range(4):
+                unit[i, 0, wheel] = unit[i, 1, wheel] = 0.0
+        for wheel in range(4 * group, min(4 * group + 4, wheels)):
+            unit[contact[wheel], 0, wheel - 4 * group] = 1.0
+        solve_four(work.factors, unit)
+    for i in range(wheels):
+        for j in range(wheels):
+            between[i, j] = flexibility[j // 4, contact[i], 0, j % 4]
 
 
 @vector_kernel
@@ -69,8 +108,9 @@ def rail_residual(rail, y, rate, second, step, speed, acceleration, rows, residu
     """
     _matrices(rail, step, speed, acceleration, rows)
     nodes = np.uint64(y.size // 2)
-    for k in range(rail.runs.shape[0]):
-        run, row = rail.runs[k], rows[k]
+    runs = rail.runs
+    for k in range(runs.shape[0]):
+        run, row = runs[k], rows[k]
         stage, damping, stiffness = entries(row, STAGE), entries(row, DAMPING), entries(row, STIFFNESS)
         first, first_before, first_after = run[FIRST], run[BEFORE], run[AFTER]
         for i in range(run[END] - first):
@@ -93,14 +133,16 @@ def rail_ledger(rail, y, rate, speed):
 
     The material velocity is `y_t - V y_r` (model section 9).
     """
+    runs, forms = rail.runs, rail.forms
+    bending, shear, foundation = rail.bending_stiffness, rail.shear_stiffness, rail.stiffness
     twice, speed_square = 2.0 * speed, speed * speed
     square = square_slope = elastic = 0.0
-    for k in range(rail.runs.shape[0]):
-        run, form = rail.runs[k], rail.forms[k]
+    for k in range(runs.shape[0]):
+        run, form = runs[k], forms[k]
         v_v, v_u, u_u = pair_sums(run, rate, rate), pair_sums(run, rate, y), pair_sums(run, y, y)
         stretch, bend = weighed(form, TENSION, u_u), weighed(form, BENDING, u_u)
         square += weighed(form, MASS, v_v) - twice * weighed(form, DRIFT, v_u) + speed_square * stretch
         square_slope += weighed(form, TENSION, v_v) - twice * weighed(form, TWIST, v_u) + speed_square * bend
-        elastic += rail.bending_stiffness * bend + rail.shear_stiffness * stretch
-        elastic += rail.stiffness * weighed(form, MASS, u_u)
+        elastic += bending * bend + shear * stretch
+        elastic += foundation * weighed(form, MASS, u_u)
     return 0.5 * rail.mass * square, 0.5 * elastic, rail.damping * square + rail.shear_damping * square_slope

@@ -1,26 +1,42 @@
-"""The brake torque as the time integrator sees it: a function of time between its breaks."""
+"""The brake of a vehicle: a law of the torque that each wheel's brake can hold.
+
+A kind of brake is a block with these kernels: `torque(wheel, time, spin)`, the torque (N m) that the brake of a wheel
+can hold or apply at a time (s) and a spin (rad/s), with its derivative by the spin (N m s/rad); `next_break()`, the
+time (s) of the next discontinuity of the torque, where steps end, infinite when there is none; `pass_break()`, which
+goes beyond it; `is_on()`, true from the onset on.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
 
-from slosh_cli.compiled import kernel
+from slosh_cli.blocks import Block
+from slosh_cli.compiled import inner_kernel
 
 
-class Brake(NamedTuple):
-    """A constant torque (N m per wheel) from the onset (s) on."""
+class StepBrake(Block):
+    """A constant torque `full` (N m per wheel) from the `onset` (s) on; `breaks` counts those passed."""
 
-    torque: float
+    full: float
     onset: float
+    breaks: int
 
+    @inner_kernel
+    def torque(self, wheel, time, spin):
+        """Nothing before the onset, then `full`."""
+        return (self.full if self.breaks > 0 else 0.0), 0.0
 
-@kernel
-def brake_torque(brake, time, phase):
-    """Torque (N m) that each brake can hold or apply at `time` (s) once `phase` breaks have passed."""
-    return brake.torque if phase > 0 else 0.0
+    @inner_kernel
+    def next_break(self):
+        """The onset, as long as it is to come."""
+        return self.onset if self.breaks == 0 else math.inf
 
+    @inner_kernel
+    def pass_break(self):
+        """Let the next stretch begin."""
+        self.breaks += 1
 
-@kernel
-def next_break(brake, phase):
-    """Time (s) of the next discontinuity of the torque; steps end there. Infinite when there is none."""
-    return brake.onset if phase == 0 else float("inf")
+    @inner_kernel
+    def is_on(self):
+        """Whether the brake has set in."""
+        return self.breaks > 0

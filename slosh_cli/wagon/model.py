@@ -1,77 +1,99 @@
-"""Constant matrices of half a wagon on one rail, from the kinetic energy and the suspension units."""
+"""Constant matrices of half a vehicle on one rail, from the kinetic energy and the suspension units.
+
+Coordinates: the position along the track; heave and pitch of the car, then of each bogie from the front; the heave of
+each wheel, then the spin of each wheel. Translations in m, rotations in rad; heave is positive up, pitch positive
+nose-down, spin positive rolling forward. Wheel 1 is the leading wheel of the front bogie.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Integers, Matrix, Vector
+from slosh_cli.blocks import Block
 from slosh_cli.scenario import Wagon
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.load import FrozenLoad
-from slosh_cli.wagon.coordinates import (
-    BOGIE_HEAVE,
-    BOGIE_PITCH,
-    CAR_HEAVE,
-    CAR_PITCH,
-    COORDINATES,
-    POSITION,
-    WHEEL_HEAVE,
-    WHEEL_SPIN,
-    WHEELS,
-)
 
-GRAVITY = 9.81
-"""Standard acceleration of free fall used throughout, m/s^2."""
-
-Array = NDArray[np.float64]
+POSITION, CAR_HEAVE, CAR_PITCH, FIRST_BOGIE = range(4)
+"""Places of the first coordinates; each bogie takes two from `FIRST_BOGIE` on: its heave, its pitch."""
+_BOGIES = 2
+_AXLES = 2  # of a bogie
 
 
-class WagonModel(NamedTuple):
-    """Half a wagon (one rail) with its load frozen, in SI units; vectors in the order of `coordinates`.
+class WagonModel(Block):
+    """Half a vehicle (one rail) with its load frozen, in SI units; vectors in the order of the `coordinates`.
 
-    `mass`, `damping`, `stiffness` are (15, 15); `weight` (15,) holds the generalised forces of gravity;
-    `tank_row` (15,) gives the longitudinal displacement of the tank's bottom centre, `car_row` that of the car
-    body's centre; `gravity_stiffness` (N m/rad, negative) is the frozen load's share of `stiffness` at car pitch;
-    `resistance` (3,) are the halved constant (N), linear (N s/m) and quadratic (N s^2/m^2) terms.
+    `wheels` on `bogies`: their heaves begin at place `first_wheel`, their spins at `first_spin`, and `frame` (wheels,)
+    is the place of the pitch that a wheel's brake reacts on. `mass`, `damping`, `stiffness` are square; `weight` holds
+    the generalised forces of gravity; `tank_row` gives the longitudinal displacement of the tank's bottom centre,
+    `car_row` that of the car body's centre, `coupling_row` that of the coupling points; `tank_push` and `tank_turn` are
+    the accelerations per newton along x at the tank's bottom centre and per newton metre in the car's pitch;
+    `gravity_stiffness` (N m/rad, negative) is the frozen load's share of `stiffness` at car pitch.
     """
 
-    mass: Array
-    damping: Array
-    stiffness: Array
-    weight: Array
-    tank_row: Array
-    car_row: Array
+    wheels: int
+    bogies: int
+    coordinates: int
+    first_wheel: int
+    first_spin: int
+    frame: Integers
+    mass: Matrix
+    damping: Matrix
+    stiffness: Matrix
+    weight: Vector
+    tank_row: Vector
+    car_row: Vector
+    coupling_row: Vector
+    tank_push: Vector
+    tank_turn: Vector
     gravity_stiffness: float
     wheel_radius: float
-    resistance: Array
+
+    @property
+    def heaves(self) -> Integers:
+        """Places of all vertical displacements: of the car, the bogies, the wheels."""
+        bogies = FIRST_BOGIE + 2 * np.arange(self.bogies)
+        return np.concatenate([[CAR_HEAVE], bogies, np.arange(self.first_wheel, self.first_spin)])
 
 
-def _unit(index: int) -> Array:
-    row = np.zeros(COORDINATES)
+_FIRST_WHEEL = FIRST_BOGIE + 2 * _BOGIES
+_FIRST_SPIN = _FIRST_WHEEL + _BOGIES * _AXLES
+_COORDINATES = _FIRST_SPIN + _BOGIES * _AXLES
+
+
+def _unit(index: int) -> Vector:
+    row = np.zeros(_COORDINATES)
     row[index] = 1.0
     return row
 
 
-def car_at_height(wagon: Wagon, height: float) -> Array:
+def car_at_height(wagon: Wagon, height: float) -> Vector:
     """Row of the longitudinal displacement of the car at `height` (m) above the rail head (model section 2)."""
     pivot_arm = 0.5 * (wagon.traction_height - wagon.wheelset.wheel_radius)
     return (
         _unit(POSITION)
-        + pivot_arm * (_unit(BOGIE_PITCH) + _unit(BOGIE_PITCH + 2))
+        + pivot_arm * (_unit(FIRST_BOGIE + 1) + _unit(FIRST_BOGIE + 3))
         + (height - wagon.traction_height) * _unit(CAR_PITCH)
     )
 
 
-def wheel_positions(wagon: Wagon) -> Array:
-    """Longitudinal positions of wheels 1 to 4 from the wagon's centre, m, forward positive; (4,)."""
-    half_base, half_pivots = 0.5 * wagon.bogie.wheelbase, 0.5 * wagon.pivot_spacing
-    return np.array(
-        [half_pivots + half_base, half_pivots - half_base, half_base - half_pivots, -half_base - half_pivots]
-    )
+def _pivots(wagon: Wagon) -> tuple[float, float]:
+    """Places (m) of the bogies ahead of the wagon's centre."""
+    return 0.5 * wagon.pivot_spacing, -0.5 * wagon.pivot_spacing
 
 
-def _mass_matrix(wagon: Wagon, tank_row: Array, load: FrozenLoad, carried: bool) -> Array:
+def _arms(wagon: Wagon) -> tuple[float, float]:
+    """Places (m) of a bogie's axles ahead of its pivot."""
+    return 0.5 * wagon.bogie.wheelbase, -0.5 * wagon.bogie.wheelbase
+
+
+def wheel_positions(wagon: Wagon) -> Vector:
+    """Longitudinal positions of the wheels from the wagon's centre, m, forward positive; (wheels,)."""
+    return np.array([pivot + arm for pivot in _pivots(wagon) for arm in _arms(wagon)])
+
+
+def _mass_matrix(wagon: Wagon, tank_row: Vector, load: FrozenLoad, carried: bool) -> Matrix:
     radius = wagon.wheelset.wheel_radius
     car = wagon.car_body
     load_row = tank_row + load.centre_height * _unit(CAR_PITCH)
@@ -83,37 +105,50 @@ def _mass_matrix(wagon: Wagon, tank_row: Array, load: FrozenLoad, carried: bool)
         (load.mass, _unit(CAR_HEAVE)),
         (load.pitch_inertia, _unit(CAR_PITCH)),
     ]
-    for bogie in (0, 2):
-        pitch = _unit(BOGIE_PITCH + bogie)
+    for heave in range(FIRST_BOGIE, _FIRST_WHEEL, 2):
+        pitch = _unit(heave + 1)
         terms += [
             (wagon.bogie.mass, _unit(POSITION) + (wagon.bogie.centre_height - radius) * pitch),
-            (wagon.bogie.mass, _unit(BOGIE_HEAVE + bogie)),
+            (wagon.bogie.mass, _unit(heave)),
             (wagon.bogie.pitch_inertia, pitch),
         ]
-    for wheel in range(WHEELS):
+    for wheel in range(_BOGIES * _AXLES):
         terms += [
             (wagon.wheelset.mass, _unit(POSITION)),
-            (wagon.wheelset.mass, _unit(WHEEL_HEAVE + wheel)),
-            (wagon.wheelset.spin_inertia, _unit(WHEEL_SPIN + wheel)),
+            (wagon.wheelset.mass, _unit(_FIRST_WHEEL + wheel)),
+            (wagon.wheelset.spin_inertia, _unit(_FIRST_SPIN + wheel)),
         ]
-    return 0.5 * sum((value * np.outer(row, row) for value, row in terms), np.zeros((COORDINATES,) * 2))
+    return 0.5 * sum((value * np.outer(row, row) for value, row in terms), np.zeros((_COORDINATES,) * 2))
 
 
-def _suspension_matrices(wagon: Wagon) -> tuple[Array, Array]:
-    """Stiffness and damping (15, 15): each unit acts on the relative heave of its two ends, arms included."""
-    stiffness = np.zeros((COORDINATES, COORDINATES))
+def _suspension_matrices(wagon: Wagon) -> tuple[Matrix, Matrix]:
+    """Stiffness and damping: each unit acts on the relative heave of its two ends, arms included."""
+    stiffness = np.zeros((_COORDINATES, _COORDINATES))
     damping = np.zeros_like(stiffness)
     units = []
-    for bogie, pivot in ((0, 0.5 * wagon.pivot_spacing), (2, -0.5 * wagon.pivot_spacing)):
-        car_end = _unit(CAR_HEAVE) - pivot * _unit(CAR_PITCH)
-        units.append((wagon.secondary_suspension, car_end - _unit(BOGIE_HEAVE + bogie)))
-        for wheel, arm in ((bogie, 0.5 * wagon.bogie.wheelbase), (bogie + 1, -0.5 * wagon.bogie.wheelbase)):
-            bogie_end = _unit(BOGIE_HEAVE + bogie) - arm * _unit(BOGIE_PITCH + bogie)
-            units.append((wagon.primary_suspension, bogie_end - _unit(WHEEL_HEAVE + wheel)))
+    for bogie, pivot in enumerate(_pivots(wagon)):
+        heave, pitch = _unit(FIRST_BOGIE + 2 * bogie), _unit(FIRST_BOGIE + 2 * bogie + 1)
+        units.append((wagon.secondary_suspension, _unit(CAR_HEAVE) - pivot * _unit(CAR_PITCH) - heave))
+        for axle, arm in enumerate(_arms(wagon)):
+            wheel = _unit(_FIRST_WHEEL + _AXLES * bogie + axle)
+            units.append((wagon.primary_suspension, heave - arm * pitch - wheel))
     for unit, row in units:
         stiffness += unit.stiffness * np.outer(row, row)
         damping += unit.damping * np.outer(row, row)
     return stiffness, damping
+
+
+def _weight(wagon: Wagon, load: FrozenLoad) -> Vector:
+    """Generalised forces (N) of gravity on half the wagon."""
+    masses = np.zeros(_COORDINATES)
+    masses[CAR_HEAVE] = wagon.car_body.mass + load.mass
+    masses[FIRST_BOGIE:_FIRST_WHEEL:2] = wagon.bogie.mass
+    masses[_FIRST_WHEEL:_FIRST_SPIN] = wagon.wheelset.mass
+    return -0.5 * STANDARD_GRAVITY * masses
+
+
+COUPLING_HEIGHT = 1.06
+"""Height (m) of the coupling points above the rail head."""
 
 
 def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, carried: bool = True) -> WagonModel:
@@ -123,22 +158,26 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
     in the car's pitch are then left to the liquid (model section 10).
     """
     tank_row = car_at_height(wagon, tank_bottom_height)
+    mass = _mass_matrix(wagon, tank_row, load, carried)
     stiffness, damping = _suspension_matrices(wagon)
-    gravity_stiffness = -0.5 * load.mass * GRAVITY * load.centre_height if carried else 0.0
+    gravity_stiffness = -0.5 * load.mass * STANDARD_GRAVITY * load.centre_height if carried else 0.0
     stiffness[CAR_PITCH, CAR_PITCH] += gravity_stiffness
-    weight = np.zeros(COORDINATES)
-    weight[CAR_HEAVE] = wagon.car_body.mass + load.mass
-    weight[[BOGIE_HEAVE, BOGIE_HEAVE + 2]] = wagon.bogie.mass
-    weight[WHEEL_HEAVE : WHEEL_HEAVE + WHEELS] = wagon.wheelset.mass
-    resistance = wagon.running_resistance
     return WagonModel(
-        mass=_mass_matrix(wagon, tank_row, load, carried),
+        wheels=_BOGIES * _AXLES,
+        bogies=_BOGIES,
+        coordinates=_COORDINATES,
+        first_wheel=_FIRST_WHEEL,
+        first_spin=_FIRST_SPIN,
+        frame=np.repeat(np.arange(FIRST_BOGIE + 1, _FIRST_WHEEL, 2), _AXLES),
+        mass=mass,
         damping=damping,
         stiffness=stiffness,
-        weight=-0.5 * GRAVITY * weight,
+        weight=_weight(wagon, load),
         tank_row=tank_row,
         car_row=car_at_height(wagon, wagon.car_body.centre_height),
+        coupling_row=car_at_height(wagon, COUPLING_HEIGHT),
+        tank_push=np.asarray(np.linalg.solve(mass, tank_row), dtype=np.float64),
+        tank_turn=np.asarray(np.linalg.solve(mass, _unit(CAR_PITCH)), dtype=np.float64),
         gravity_stiffness=gravity_stiffness,
         wheel_radius=wagon.wheelset.wheel_radius,
-        resistance=0.5 * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
     )

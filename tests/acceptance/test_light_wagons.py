@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from slosh_cli.solver.cells import FOLLOWING, LEFT_FORCE
 
 from slosh_cli.results.simulate import simulate
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario import replace as replaced
-from slosh_cli.solver.cells import FOLLOWING, LEFT_FORCE
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
 from tests.reference_code.plain_shallow import PlainTank, circle

@@ -13,18 +13,18 @@ import numba
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from slosh_cli.solver.cells import LAST_STEP, LEFT_FORCE, START_FORCE, expect_push
+from slosh_cli.solver.state import new_scratch, new_state
+from slosh_cli.wagon.coordinates import CAR_PITCH
 
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.results.tables import summary_row
 from slosh_cli.results.validity import UNLOADING_LIMIT
-from slosh_cli.solver.cells import LAST_STEP, LEFT_FORCE, START_FORCE, expect_push
 from slosh_cli.solver.events import EVENT_COUNT
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
-from slosh_cli.solver.state import new_scratch, new_state
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.table import columns
-from slosh_cli.wagon.coordinates import CAR_PITCH
 
 ROOT = Path(__file__).parents[2]
 COMPUTED = "tank.coefficients=computed"

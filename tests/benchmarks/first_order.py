@@ -21,9 +21,9 @@ from reference_code.plain_wagon import PHI, S
 from scipy.integrate import solve_ivp
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.sparse import block_array, csc_array, dia_array, diags_array, eye_array
+from slosh_cli.solver.problem import Control
 
 from slosh_cli.scenario import Scenario
-from slosh_cli.solver.problem import Control
 from slosh_cli.solver.setup import problem
 
 Array = NDArray[np.float64]

@@ -5,6 +5,7 @@ import json
 import h5py
 import numpy as np
 import pytest
+from slosh_cli.wagon.coordinates import CAR_PITCH
 
 from slosh_cli.results import rest
 from slosh_cli.results.hdf5 import write_history
@@ -13,7 +14,6 @@ from slosh_cli.results.tables import summary_row
 from slosh_cli.solver.excite import Deceleration, excite
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
-from slosh_cli.wagon.coordinates import CAR_PITCH
 
 ACID = ("tank.coefficients=computed", "tank.modes=3", "tank.liquid.density=1840 kg/m^3", "braking.initial_speed=7 km/h")
 NAME = "push of the liquid after the stop over what holds the wagon"

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import expm
+from slosh_cli.solver.problem import empty_point
+from slosh_cli.solver.state import REJECTED, STEPS, TIME, new_scratch, new_state
 
 from slosh_cli.solver import advance as loop
 from slosh_cli.solver.events import EVENT_COUNT
-from slosh_cli.solver.problem import empty_point
 from slosh_cli.solver.record import SLOSH_COLUMN
 from slosh_cli.solver.setup import problem
-from slosh_cli.solver.state import REJECTED, STEPS, TIME, new_scratch, new_state
 from slosh_cli.wagon.brake import Brake
 
 COORDINATES = 15

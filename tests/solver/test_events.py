@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from slosh_cli.solver.method import GAMMA
+from slosh_cli.solver.state import EVENTS, PHASE, REJECTED, TIME, new_scratch, new_state
+from slosh_cli.wagon.coordinates import WHEEL_HEAVE, WHEEL_SPIN
 
 from slosh_cli.solver import advance as loop
 from slosh_cli.solver import events
 from slosh_cli.solver.contacts import brake_holds
 from slosh_cli.solver.events import EVENT_COUNT, EVENT_TOLERANCE, event_values, shorter_step
-from slosh_cli.solver.method import GAMMA
 from slosh_cli.solver.record import SLOSH_COLUMN
 from slosh_cli.solver.setup import problem
-from slosh_cli.solver.state import EVENTS, PHASE, REJECTED, TIME, new_scratch, new_state
 from slosh_cli.track.contact import creep_force, normal_force
 from slosh_cli.wagon.brake import Brake
-from slosh_cli.wagon.coordinates import WHEEL_HEAVE, WHEEL_SPIN
 
 NEARNESS = [0.0, 1e-8, 3e-7, 9e-7, 1.1e-6, 1.5e-6, 3e-6, 1e-5, 1e-4, 1e-2]
 

@@ -3,11 +3,11 @@
 import numba
 import numpy as np
 import pytest
-
 from slosh_cli.solver.problem import empty_point
+from slosh_cli.solver.state import RIGHT_HAND_SIDES, new_scratch
+
 from slosh_cli.solver.setup import problem
 from slosh_cli.solver.stage import RAIL_SHARE, prepare_stage, solve_stage
-from slosh_cli.solver.state import RIGHT_HAND_SIDES, new_scratch
 from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import rail_residual
 

@@ -74,6 +74,7 @@ def _shallow(tank: Any, deceleration: float, steps: int) -> tuple[Array, Array, 
         still_depth=depth,
         loss=np.zeros(cells + 1),
         table=section_table(section, GRAVITY, tank["slot_speed"]),
+        columns=1,
     )
     area, flow, deep = np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth)
     evolve: Any = shallow.liquid_evolve

@@ -8,6 +8,7 @@ from math import sin
 import numpy as np
 from numpy.typing import NDArray
 
+from slosh_cli.method import BASE, START
 from slosh_cli.scenario import find_packaged, load_tank_scenario
 from slosh_cli.tank import modal
 from slosh_cli.tank.coefficients import SloshMode, computed_modes, slosh_modes
@@ -101,18 +102,15 @@ def normalised_force(modes: Sequence[SloshMode], mass: float, deceleration: floa
     The tank moves as prescribed and does not pitch. Trapezoidal rule; steps are 1/300 of the first period.
     """
     liquid = modal.modal_liquid(modes, GRAVITY, 1.0)
-    count = len(modes)
-    given = _deceleration(deceleration, ramp)
-    amplitude, rate = np.zeros(count), np.zeros(count)
-    second = kernels.liquid_acceleration(liquid, amplitude, rate, 0.0, -given(0.0))
+    given, half = _deceleration(deceleration, ramp), 0.5 * STEP
+    kernels.move_modes(liquid, 0.0, -given(0.0))
     forces = []
     for time in _times():
-        force = kernels.liquid_force(liquid, amplitude, second)
-        forces.append((force + mass * given(time)) / (mass * deceleration))
-        half = 0.5 * STEP
-        ahead, faster = amplitude + STEP * rate + half**2 * second, rate + half * second
-        second = kernels.liquid_acceleration(liquid, ahead, faster, half, -given(time + STEP))
-        amplitude, rate = ahead + half**2 * second, faster + half * second
+        forces.append((kernels.modal_force(liquid) + mass * given(time)) / (mass * deceleration))
+        amplitude, rate, second = (values[START] for values in (liquid.amplitude, liquid.rate, liquid.second))
+        liquid.amplitude[BASE] = amplitude + STEP * rate + half**2 * second
+        liquid.rate[BASE] = rate + half * second
+        kernels.move_modes(liquid, half, -given(time + STEP))
     return np.array(forces)
 
 

@@ -85,7 +85,7 @@ def _costs(found: Findings, name: str, result: Result, ground: Ground, setting: 
     """What a whole stop would ask of the fixed rail, beside what it asks of the moving one."""
     from slosh_cli.solver.setup import problem
 
-    moving = problem(result.scenario).start.rail.size
+    moving = 2 * problem(result.scenario).vehicle.rail.nodes
     found.note(f"{name}: unknowns of the fixed rail over those of the moving one", ground.unknowns / moving)
     per_second = ground.seconds / float(result.time[-1])
     found.note(f"{name}: fixed rail alone, seconds of computing per second of braking", per_second)

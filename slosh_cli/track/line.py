@@ -1,0 +1,19 @@
+"""Forces along the track that act on a vehicle as a whole."""
+
+from __future__ import annotations
+
+from slosh_cli.arrays import Vector
+from slosh_cli.blocks import Block
+from slosh_cli.compiled import inner_kernel
+
+
+class Line(Block):
+    """The running resistance `a + b V + c V^2` of a half vehicle: `resistance` (3,) in N, N s/m and N s^2/m^2."""
+
+    resistance: Vector
+
+    @inner_kernel
+    def resisting_force(self, speed):
+        """Running resistance (N) at `speed` (m/s) and its derivative (N s/m); model section 8."""
+        constant, linear, quadratic = self.resistance[0], self.resistance[1], self.resistance[2]
+        return constant + speed * (linear + speed * quadratic), linear + 2.0 * speed * quadratic
