@@ -46,7 +46,8 @@ class Block:
                 _let_kernels_call(name)
 
     def __init__(self, **given: Any) -> None:
-        hints = _hints(type(self))
+        own: Any = type(self)
+        hints = _hints(own)
         if given.keys() != hints.keys():
             raise TypeError(f"{type(self).__name__} takes {', '.join(hints)}, but {', '.join(given)} were given")
         values = {name: _as_field(hint, given[name]) for name, hint in hints.items()}
@@ -76,7 +77,7 @@ class Block:
         view[place] = value
 
     def _number(self, name: str) -> tuple[int, Any]:
-        kinds = {} if name.startswith("__") else dict(self._type.kinds)
+        kinds = {} if name.startswith("_") else dict(self._type.kinds)
         if not isinstance(kinds.get(name), types.Number):
             raise AttributeError(f"{type(self).__name__} has no number {name!r}")
         view = self._numbers if kinds[name] is types.float64 else self._memory
@@ -85,7 +86,8 @@ class Block:
     @classmethod
     def blank(cls, size: int = 0, **given: Any) -> Self:
         """A block whose numbers are zero and whose vectors hold `size` zeros, but for what is `given`."""
-        for name, hint in _hints(cast(Any, cls)).items():
+        own: Any = cls
+        for name, hint in _hints(own).items():
             if name not in given:
                 kind = _kind(hint)
                 given[name] = hint(0) if kind is None else np.zeros(kind.dimensions * (size,), dtype=kind.dtype)
@@ -93,7 +95,7 @@ class Block:
 
     def replaced(self, **changes: Any) -> Self:
         """A copy with other values of some fields; arrays and parts that stay are shared."""
-        return type(self)(**{name: changes.get(name, getattr(self, name)) for name in _hints(type(self))})
+        return type(self)(**{name: changes.get(name, getattr(self, name)) for name, _ in self._type.kinds})
 
 
 class _Row(tuple[Block, ...]):
@@ -126,7 +128,7 @@ def _layout(kinds: tuple[tuple[str, Any], ...]) -> _Layout:
 
 
 @cache
-def _hints(cls: type[Block]) -> dict[str, Any]:
+def _hints(cls: Any) -> dict[str, Any]:
     hints = get_type_hints(cls, include_extras=True)
     return {name: hints[name] for name in hints if not name.startswith("_") and name != "address"}
 
@@ -205,7 +207,7 @@ class _Fields(AttributeTemplate):
 
     key = BlockType
 
-    def generic_resolve(self, block: Any, name: str) -> Any:
+    def generic_resolve(self, block: Any, name: str) -> Any:  # type: ignore[override]
         kind = dict(block.kinds).get(name)
         if kind is not None:
             return kind

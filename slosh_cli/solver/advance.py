@@ -332,7 +332,7 @@ def advance(train: Train, rows: Cube, most_tries: int) -> int:
                 train.trying = 0.0
                 return ROWS_FULL
         step = train.trying
-        outcome = _judge(train, rows, step, take_step(train, step))
+        outcome: int = _judge(train, rows, step, take_step(train, step))
         if outcome != RUNNING:
             return outcome
     return RUNNING

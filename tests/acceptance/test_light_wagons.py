@@ -4,12 +4,10 @@ The added mass of the liquid that waves reach within a step is then larger than 
 push from the last acceleration swings up and takes ever shorter steps.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from slosh_cli.solver.cells import FOLLOWING, LEFT_FORCE
 
+from slosh_cli.method import START
 from slosh_cli.results.simulate import simulate
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario import replace as replaced
@@ -123,13 +121,13 @@ def test_a_small_push_meets_the_resistance_of_the_waves_it_sends_out(shipped):
     assert change[-1] == pytest.approx(-3 * force / resistance, rel=0.01)
 
 
-def whole_momentum(stop_, point, cells, left):
+def whole_momentum(vehicle):
     """Momentum along the track of half the wagon and of its liquid, N s, with what the push still owes the wagon."""
-    model, v = stop_.model, point.v
-    liquid = model.shallow
-    tank = float(model.wagon.tank_row @ v) + liquid.centre_height * v[2]
-    own = liquid.density * liquid.spacing * float(cells.flow.sum())
-    return float(model.wagon.mass[0] @ v) + liquid.mass * tank + own + left
+    wagon, v = vehicle.wagon, vehicle.points[START].v
+    liquid = vehicle.liquid.shallow
+    tank = float(wagon.tank_row @ v) + liquid.centre_height * v[2]
+    own = liquid.density * liquid.spacing * float(vehicle.liquid.start.flow.sum())
+    return float(wagon.mass[0] @ v) + liquid.mass * tank + own + vehicle.liquid.left_force
 
 
 @pytest.mark.parametrize("until", ["1 s", "5 s"])
@@ -137,24 +135,26 @@ def test_nothing_but_the_wheels_takes_momentum(shipped, until):
     """No wheel locks, so each one's spin tells the impulse of its creep force: `I phi' = INT (f R - T) dt`."""
     case = light(LIQUID / 50, "braking.torque=2.5 kN m", f"solver.time_limit={until}")
     stop_ = problem(shipped(*case))
-    before = whole_momentum(stop_, stop_.start, stop_.cells, 0.0)
-    spins = stop_.start.v[-4:].copy()
-    state = integrate(stop_).state
-    assert state.locked_time.max() == 0.0
-    wagon, brake = stop_.model.wagon, stop_.model.brake
-    braked = brake.torque * (state.clock[0] - brake.onset)
-    taken = float(np.sum(wagon.mass[-1, -1] * (state.start.v[-4:] - spins) + braked)) / wagon.wheel_radius
-    after = whole_momentum(stop_, state.start, state.cells_start, float(state.push[LEFT_FORCE]))
+    vehicle = stop_.vehicle
+    before, start = whole_momentum(vehicle), vehicle.points[START]
+    spins = start.v[-4:].copy()
+    train = integrate(stop_).train
+    assert vehicle.account.locked_time.max() == 0.0
+    wagon, brake = vehicle.wagon, vehicle.brake
+    braked = brake.full * (train.time - brake.onset)
+    taken = float(np.sum(wagon.mass[-1, -1] * (start.v[-4:] - spins) + braked)) / wagon.wheel_radius
+    after = whole_momentum(vehicle)
     assert before - after == pytest.approx(taken, rel=5e-6)
 
 
 def at_fixed_steps(scenario, step):
     """Place and speed after 6 s in steps of one length, and the steps that followed the liquid."""
     stop_ = problem(scenario)
-    control = stop_.model.control._replace(longest_step=step, local_tolerance=1e3)
-    state = integrate(replace(stop_, model=stop_.model._replace(control=control))).state
-    assert state.push[FOLLOWING] > 0.0
-    return np.array([state.start.q[0], state.start.v[0]])
+    stop_.train.control.longest_step, stop_.train.control.local_tolerance = step, 1e3
+    integrate(stop_)
+    assert stop_.vehicle.liquid.following > 0.0
+    start = stop_.vehicle.points[START]
+    return np.array([start.q[0], start.v[0]])
 
 
 def test_a_followed_push_is_of_second_order_in_the_step(shipped):

@@ -5,26 +5,24 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import h5py
-import numba
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from slosh_cli.solver.cells import LAST_STEP, LEFT_FORCE, START_FORCE, expect_push
-from slosh_cli.solver.state import new_scratch, new_state
-from slosh_cli.wagon.coordinates import CAR_PITCH
 
+from slosh_cli.compiled import kernel
+from slosh_cli.method import START
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.results.tables import summary_row
 from slosh_cli.results.validity import UNLOADING_LIMIT
-from slosh_cli.solver.events import EVENT_COUNT
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
+from slosh_cli.solver.stage import read_ride
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.table import columns
+from slosh_cli.wagon.model import CAR_PITCH
 
 ROOT = Path(__file__).parents[2]
 COMPUTED = "tank.coefficients=computed"
@@ -71,13 +69,13 @@ def test_ledger_closes_and_the_rails_carry_the_weight(stop, speed, torque):
     assert result.energy["slosh_damping"] > 0.0
 
 
-def whole_momentum(stop_, state):
+def whole_momentum(vehicle):
     """Momentum along the track of half the wagon and of its liquid, N s, with what the push still owes the wagon."""
-    model, v = stop_.model, state.start.v
-    liquid = model.shallow
-    tank = float(model.wagon.tank_row @ v) + liquid.centre_height * v[2]
-    own = liquid.density * liquid.spacing * float(state.cells_start.flow.sum())
-    return float(model.wagon.mass[0] @ v) + liquid.mass * tank + own + float(state.push[LEFT_FORCE])
+    wagon, v = vehicle.wagon, vehicle.points[START].v
+    liquid = vehicle.liquid.shallow
+    tank = float(wagon.tank_row @ v) + liquid.centre_height * v[2]
+    own = liquid.density * liquid.spacing * float(vehicle.liquid.start.flow.sum())
+    return float(wagon.mass[0] @ v) + liquid.mass * tank + own + vehicle.liquid.left_force
 
 
 @pytest.mark.parametrize("baffles", ["[]", "[{position: 5 m, opening: 0.2}, {position: 10 m, opening: 0.2}]"])
@@ -88,18 +86,19 @@ def test_nothing_but_wheels_and_resistance_takes_momentum(stop, shipped, until, 
     No wheel locks, so each one's spin tells the impulse of its creep force: `I phi' = INT (f R - T) dt`.
     """
     setting = case(80, 5, "shallow-water", f"solver.time_limit={until}", f"tank.baffles={baffles}")
-    before = problem(shipped(*setting))
-    start, stop_ = whole_momentum_at_rest(before), problem(shipped(*setting))
+    stop_ = problem(shipped(*setting))
+    vehicle = stop_.vehicle
+    start, spins = whole_momentum(vehicle), vehicle.points[START].v[-4:].copy()
     run, result = integrate(stop_), stop(*setting)
     assert max(result.locked_time_s) == 0.0
-    wagon, brake = stop_.model.wagon, stop_.model.brake
-    spin = run.state.start.v[-4:] - before.start.v[-4:]
-    braked = brake.torque * (run.state.clock[0] - brake.onset)
+    wagon, brake = vehicle.wagon, vehicle.brake
+    spin = vehicle.points[START].v[-4:] - spins
+    braked = brake.full * (run.train.time - brake.onset)
     by_wheels = float(np.sum(wagon.mass[-1, -1] * spin + braked)) / wagon.wheel_radius
-    constant, linear, quadratic = wagon.resistance
+    constant, linear, quadratic = vehicle.line.resistance
     speed = result.channels["speed"]
     by_air = CubicSpline(result.time, constant + linear * speed + quadratic * speed**2).integrate(0, result.time[-1])
-    assert start - whole_momentum(stop_, run.state) == pytest.approx(by_wheels + float(by_air), rel=5e-6)
+    assert start - whole_momentum(vehicle) == pytest.approx(by_wheels + float(by_air), rel=5e-6)
 
 
 LOCKING = [(80, 10), (160, 17.5)]
@@ -109,21 +108,18 @@ LOCKING = [(80, 10), (160, 17.5)]
 def test_recorded_forces_take_the_whole_momentum(stop, shipped, speed, torque):
     """Creep forces as recorded, at default tolerance: what they and the air take, wagon and liquid lose."""
     setting = case(speed, torque, "shallow-water", "output.interval=1 ms")
-    before = problem(shipped(*setting))
-    start, stop_ = whole_momentum_at_rest(before), problem(shipped(*setting))
-    run, result = integrate(stop_), stop(*setting)
+    stop_ = problem(shipped(*setting))
+    vehicle = stop_.vehicle
+    start = whole_momentum(vehicle)
+    integrate(stop_)
+    result = stop(*setting)
     assert (max(result.locked_time_s) > 1.0) == ((speed, torque) in LOCKING)
-    constant, linear, quadratic = stop_.model.wagon.resistance
+    constant, linear, quadratic = vehicle.line.resistance
     rolling = result.channels["speed"]
     force = sum(result.channels[f"wheel_{i}_tangential_force"] for i in (1, 2, 3, 4))
     force = force + constant + linear * rolling + quadratic * rolling**2
     taken = CubicSpline(result.time, force).antiderivative()(result.time)
-    assert start - whole_momentum(stop_, run.state) == pytest.approx(taken[-1], rel=3e-5)
-
-
-def whole_momentum_at_rest(stop_):
-    model, v = stop_.model, stop_.start.v
-    return float(model.wagon.mass[0] @ v) + model.shallow.mass * float(model.wagon.tank_row @ v)
+    assert start - whole_momentum(vehicle) == pytest.approx(taken[-1], rel=3e-5)
 
 
 def test_ledger_and_distance_tighten_with_the_tolerance(stop):
@@ -142,10 +138,11 @@ def test_ledger_and_distance_tighten_with_the_tolerance(stop):
 def at_fixed_steps(scenario, step):
     """Place, pitch and largest ledger residual after 12 s in steps of one length."""
     stop_ = problem(scenario)
-    control = stop_.model.control._replace(longest_step=step, local_tolerance=1e3)
-    run = integrate(replace(stop_, model=stop_.model._replace(control=control)))
-    assert run.state.clock[0] / run.state.counts[0] == pytest.approx(step, rel=0.1)
-    return np.array([run.state.start.q[0], run.state.start.q[CAR_PITCH], run.state.residual[2]])
+    stop_.train.control.longest_step, stop_.train.control.local_tolerance = step, 1e3
+    train = integrate(stop_).train
+    assert train.time / train.steps == pytest.approx(step, rel=0.1)
+    q = stop_.vehicle.points[START].q
+    return np.array([q[0], q[CAR_PITCH], train.largest_residual])
 
 
 def test_however_tight_the_tolerance_a_stop_with_bores_ends(stop):
@@ -159,22 +156,21 @@ def test_however_tight_the_tolerance_a_stop_with_bores_ends(stop):
 TIGHT = ("1e-5", "3e-6", "1e-6")
 
 
-@numba.njit
-def expected_push(model, scratch, state, step):
-    return expect_push(model, scratch, state, step)
+@kernel
+def expected_push(vehicle, step):
+    read_ride(vehicle, vehicle.points[0])
+    ready, _, _ = vehicle.liquid.expect(vehicle.ride, step)
+    return ready
 
 
 def test_a_short_step_does_not_bear_all_that_a_long_one_left_open(shipped):
     """An impulse left open over 10 ms is paid back as a force over 10 ms: wheel loads see no blow after an event."""
-    start = problem(shipped("paper_80", "tank.liquid.model=shallow-water"))
-    scratch = new_scratch(start.model.rail, 0, start.cells.area.size)
     forces = []
     for owed in (0.0, 1.0):
-        state = new_state(start.start, start.cells, EVENT_COUNT, 1e-4)
-        state.push[LEFT_FORCE], state.push[LAST_STEP] = owed, 0.01
-        assert expected_push(start.model, scratch, state, 1e-4)
-        forces.append(state.push[START_FORCE])
-        start.start.a[:] = 0.0
+        vehicle = problem(shipped("paper_80", "tank.liquid.model=shallow-water")).vehicle
+        vehicle.liquid.left_force, vehicle.liquid.last_step = owed, 0.01
+        assert expected_push(vehicle, 1e-4)
+        forces.append(vehicle.liquid.start_force)
     assert forces[1] - forces[0] == pytest.approx(1.0 / 0.01, rel=1e-6)
 
 

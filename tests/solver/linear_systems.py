@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import expm
-from slosh_cli.solver.problem import empty_point
-from slosh_cli.solver.state import REJECTED, STEPS, TIME, new_scratch, new_state
 
+from slosh_cli.method import START
 from slosh_cli.solver import advance as loop
-from slosh_cli.solver.events import EVENT_COUNT
-from slosh_cli.solver.record import SLOSH_COLUMN
+from slosh_cli.solver.record import columns_of
 from slosh_cli.solver.setup import problem
-from slosh_cli.wagon.brake import Brake
+from slosh_cli.solver.train import new_train
+from slosh_cli.solver.vehicle import new_point, new_vehicle
+from slosh_cli.tank.modal import ModalLiquid
 
 COORDINATES = 15
 CRUISE = 20.0
@@ -46,8 +46,8 @@ def wagon_of(scenario, stiffness_factor):
     A soft spring to the ground on every wheel's heave holds what contacts would hold.
     """
     stop = problem(scenario)
-    model, wagon, liquid = stop.model, stop.model.wagon, stop.model.liquid
-    modes = liquid.mu.size
+    wagon, liquid = stop.vehicle.wagon, stop.vehicle.liquid
+    modes = liquid.mu.size if isinstance(liquid, ModalLiquid) else 0
     size = COORDINATES + modes
     mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
     mass[:COORDINATES, :COORDINATES] = wagon.mass
@@ -67,67 +67,82 @@ def wagon_of(scenario, stiffness_factor):
         stiffness[place, 2] = stiffness[2, place] = -liquid.pitch_weight[n]
     system = LinearSystem(mass, damping, stiffness)
     inner = slice(0, COORDINATES)
-    free = wagon._replace(
+    free = wagon.replaced(
         mass=mass[inner, inner].copy(),
         damping=damping[inner, inner].copy(),
         stiffness=stiffness[inner, inner].copy(),
         weight=np.zeros(COORDINATES),
-        resistance=np.zeros(3),
     )
-    return system, replace(stop, model=model._replace(wagon=free))
+    return system, with_parts(stop, wagon=free)
+
+
+def with_parts(stop, **parts):
+    """The stop whose wagon has other parts, with a state of its own."""
+    old = stop.vehicle
+    names = ("wagon", "liquid", "rail", "contact", "line", "brake", "scales")
+    vehicle = new_vehicle(*(parts.get(name, getattr(old, name)) for name in names), old.points[START])
+    return replace(stop, train=new_train((vehicle,), stop.train.control, 1e-3))
 
 
 def linear_stop(stop, step, end):
-    """`stop` without contacts and brake, to be integrated with a fixed `step` (s) until `end` (s)."""
-    model = stop.model
-    control = model.control._replace(
+    """`stop` without contacts, resistance and brake, to be integrated with a fixed `step` (s) until `end` (s)."""
+    control = stop.train.control.replaced(
         local_tolerance=1e30,
-        approach_scale=np.inf,
         stop_speed=-1e9,
         time_limit=end,
         longest_step=step,
         most_slowing=np.inf,
         interval=1e9,
     )
-    contact = model.contact._replace(stiffness=0.0)
-    return replace(stop, model=model._replace(contact=contact, brake=Brake(0.0, np.inf), control=control))
+    vehicle = stop.vehicle
+    stop = with_parts(
+        stop,
+        contact=vehicle.contact.replaced(stiffness=0.0),
+        line=vehicle.line.replaced(resistance=np.zeros(3)),
+        brake=vehicle.brake.replaced(full=0.0, onset=np.inf),
+    )
+    return replace(stop, train=stop.train.replaced(control=control))
 
 
 def march(stop, start, step):
     """Final point after integrating `stop` from `start` in fixed steps of `step` (s) up to its time limit."""
-    model, modes = stop.model, start.slosh.size
-    state = new_state(start, stop.cells, EVENT_COUNT, step)
-    state.airborne[:] = True
-    scratch = new_scratch(model.rail, modes, stop.cells.area.size)
-    rows = np.zeros((8, SLOSH_COLUMN + 2 * modes))
-    steps = round(model.control.time_limit / step)
-    assert loop.begin(model, scratch, state)
-    outcome = loop.advance(model, scratch, state, rows, steps + 10)
+    point, x, v = start
+    old = stop.vehicle
+    liquid = old.liquid
+    if isinstance(liquid, ModalLiquid):
+        shape = {name: np.zeros_like(liquid.amplitude) for name in ("amplitude", "rate", "second")}
+        liquid = liquid.replaced(**shape)
+        liquid.amplitude[START], liquid.rate[START] = x[COORDINATES:], v[COORDINATES:]
+    vehicle = new_vehicle(old.wagon, liquid, old.rail, old.contact, old.line, old.brake, old.scales, point)
+    vehicle.airborne[:] = True
+    train = new_train((vehicle,), stop.train.control, step)
+    rows = np.zeros((8, 1, columns_of(vehicle).end))
+    steps = round(train.control.time_limit / step)
+    outcome = loop.advance(train, rows, steps + 10)
     assert outcome == loop.TIME_LIMIT
-    assert state.counts[STEPS] == steps
-    assert state.counts[REJECTED] == 0
-    assert abs(state.clock[TIME] - model.control.time_limit) < 1e-9
-    return state.start
+    assert train.steps == steps
+    assert train.rejected == 0
+    assert abs(train.time - train.control.time_limit) < 1e-9
+    return vehicle
 
 
 def started(stop, x, v, rail=None, rail_rate=None):
     """A point with these displacements and velocities (wagon and slosh), moving at the cruising speed on top."""
-    model = stop.model
-    unknowns, modes = 2 * model.rail.nodes, model.liquid.mu.size
-    start = empty_point(unknowns, modes)
+    start = new_point(START, stop.vehicle.wagon, stop.vehicle.rail)
     start.q[:], start.v[:] = x[:COORDINATES], v[:COORDINATES]
     start.v[0] += CRUISE
-    start.slosh[:], start.slosh_rate[:] = x[COORDINATES:], v[COORDINATES:]
     if rail is not None:
         start.rail[:], start.rail_rate[:] = rail, rail_rate
-    return start
+    return start, x, v
 
 
-def reached(point):
+def reached(vehicle):
     """Displacements and velocities of wagon and slosh, velocities less the cruising speed."""
-    v = np.concatenate([point.v, point.slosh_rate])
+    point, liquid = vehicle.points[START], vehicle.liquid
+    slosh = (liquid.amplitude[START], liquid.rate[START]) if isinstance(liquid, ModalLiquid) else (np.zeros(0),) * 2
+    v = np.concatenate([point.v, slosh[1]])
     v[0] -= CRUISE
-    return np.concatenate([point.q, point.slosh]), v
+    return np.concatenate([point.q, slosh[0]]), v
 
 
 def tr_bdf2(z):

@@ -3,23 +3,21 @@
 The runs start a hair before the event, so that the outcome does not hang on where the step control happened to land.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from slosh_cli.solver.method import GAMMA
-from slosh_cli.solver.state import EVENTS, PHASE, REJECTED, TIME, new_scratch, new_state
-from slosh_cli.wagon.coordinates import WHEEL_HEAVE, WHEEL_SPIN
+from linear_systems import with_parts
 
+from slosh_cli.blocks import Block
+from slosh_cli.compiled import kernel
+from slosh_cli.method import END, GAMMA, MIDDLE, START
 from slosh_cli.solver import advance as loop
-from slosh_cli.solver import events
-from slosh_cli.solver.contacts import brake_holds
-from slosh_cli.solver.events import EVENT_COUNT, EVENT_TOLERANCE, event_values, shorter_step
-from slosh_cli.solver.record import SLOSH_COLUMN
+from slosh_cli.solver.advance import _event_step
+from slosh_cli.solver.record import columns_of
 from slosh_cli.solver.setup import problem
-from slosh_cli.track.contact import creep_force, normal_force
-from slosh_cli.wagon.brake import Brake
+from slosh_cli.solver.train import new_train
+from slosh_cli.wagon.locking import SWITCH_TOLERANCE, wheel_holds, wheel_values
 
+WHEEL_HEAVE, WHEEL_SPIN = 7, 11
 NEARNESS = [0.0, 1e-8, 3e-7, 9e-7, 1.1e-6, 1.5e-6, 3e-6, 1e-5, 1e-4, 1e-2]
 
 
@@ -35,16 +33,26 @@ def near_event(shipped):
 
 
 def march(stop, steps, airborne=(), locked=(), first_step=1e-3):
-    """State after `steps` steps and the loop's last word. Where a wheel is `locked`, the brakes have set in before."""
-    model, start = stop.model, stop.start
-    state = new_state(start, stop.cells, EVENT_COUNT, first_step)
-    state.airborne[list(airborne)] = True
-    state.locked[list(locked)] = True
-    state.counts[PHASE] = 1 if locked else 0
-    scratch = new_scratch(stop.model.rail, start.slosh.size, stop.cells.area.size)
-    assert loop.begin(model, scratch, state)
-    rows = np.zeros((8, SLOSH_COLUMN + 2 * start.slosh.size))
-    return state, loop.advance(model, scratch, state, rows, steps)
+    """The wagon and its train after `steps` steps or switches, and the loop's last word.
+
+    Where a wheel is `locked`, the brakes have set in before.
+    """
+    vehicle = with_parts(stop).vehicle
+    vehicle.airborne[list(airborne)] = True
+    vehicle.locked[list(locked)] = True
+    vehicle.brake.breaks = 1 if locked else 0
+    train = new_train((vehicle,), stop.train.control, first_step)
+    rows, outcome = np.zeros((8, 1, columns_of(vehicle).end)), loop.RUNNING
+    for _ in range(50 * steps):
+        if outcome != loop.RUNNING or train.steps + train.events >= steps:
+            break
+        outcome = loop.advance(train, rows, 1)
+    return vehicle, train, outcome
+
+
+def approach_scale(stop):
+    """Static Hertz approach of a wheel, m."""
+    return (stop.vehicle.scales.load / stop.vehicle.contact.stiffness) ** (2 / 3)
 
 
 @pytest.mark.parametrize("speed", NEARNESS)
@@ -52,13 +60,12 @@ def march(stop, steps, airborne=(), locked=(), first_step=1e-3):
 def test_wheel_about_to_stop_locks(near_event, speed, inertia):
     """A brake of 50 kN m against a wheel that turns at next to nothing: up to a kilometre a second squared."""
     stop = near_event(50, f"wagon.wheelset.spin_inertia={inertia} kg m^2", "contact.adhesion=wet")
-    model, start = stop.model, stop.start
-    start.v[WHEEL_SPIN] = speed / model.wagon.wheel_radius
-    state, outcome = march(stop, 30)
+    stop.vehicle.points[START].v[WHEEL_SPIN] = speed / stop.vehicle.wagon.wheel_radius
+    vehicle, train, outcome = march(stop, 30)
     assert outcome == loop.RUNNING
-    assert state.clock[TIME] > 1e-3
-    assert state.locked[0]
-    assert state.start.v[WHEEL_SPIN] == 0.0
+    assert train.time > 1e-3
+    assert vehicle.locked[0]
+    assert vehicle.points[START].v[WHEEL_SPIN] == 0.0
 
 
 @pytest.fixture
@@ -67,14 +74,20 @@ def held_wheel(near_event):
 
     def build(gap, fall):
         stop = near_event(20)
-        model, start = stop.model, stop.start
+        vehicle, start = stop.vehicle, stop.vehicle.points[START]
         start.v[WHEEL_SPIN] = 0.0
         start.v[WHEEL_HEAVE] = -fall
-        creep, *_ = creep_force(model.contact, start.normal[0], start.v[0], start.v[0])
-        torque = creep * model.wagon.wheel_radius / (1.0 - gap)
-        return replace(stop, model=model._replace(brake=Brake(torque, 0.0)))
+        creep, *_ = vehicle.contact.creep_force(start.normal[0], start.v[0], start.v[0])
+        vehicle.brake.full = creep * vehicle.wagon.wheel_radius / (1.0 - gap)
+        return stop
 
     return build
+
+
+def state_of(stop):
+    """The arrays of the start, which a run changes."""
+    point = stop.vehicle.points[START]
+    return [getattr(point, name) for name, _ in point._type.kinds if name != "stage"]
 
 
 @pytest.mark.parametrize("first_step", [1e-5, 1e-4, 1e-3])
@@ -84,12 +97,16 @@ def test_wheel_about_to_turn_again_turns(held_wheel, gap, fall, first_step):
     """Held up to the torque and no further (model section 8), also where it enters beyond it."""
     stop = held_wheel(gap, fall)
     for steps in range(1, 16):
-        state, outcome = march(stop, steps, locked=[0], first_step=first_step)
+        start, began = stop.vehicle.points[START], [values.copy() for values in state_of(stop)]
+        vehicle, train, outcome = march(stop, steps, locked=[0], first_step=first_step)
         assert outcome == loop.RUNNING
-        creep = state.start.creep[0] * stop.model.wagon.wheel_radius / stop.model.brake.torque
-        assert creep < 1.0 + 1e-5 or not state.locked[0]
-    assert state.clock[TIME] > 1e-6
-    assert state.start.v[WHEEL_SPIN] > 0.0
+        creep = start.creep[0] * vehicle.wagon.wheel_radius / vehicle.brake.full
+        assert creep < 1.0 + 1e-5 or not vehicle.locked[0]
+        turned = start.v[WHEEL_SPIN] > 0.0
+        for values, before in zip(state_of(stop), began, strict=True):
+            values[:] = before
+    assert train.time > 1e-6
+    assert turned
 
 
 @pytest.mark.parametrize("first_step", [1e-4, 3e-4])
@@ -97,24 +114,62 @@ def test_wheel_about_to_turn_again_turns(held_wheel, gap, fall, first_step):
 def test_release_within_the_shortest_step_by_one_stage_but_not_by_the_other(held_wheel, fall, first_step):
     """2e-6 of the torque short of the release, 2 ns: on a bent line one stage says less than the shortest step and the
     other says more. Once that ended runs as wheels that lock and release without time passing."""
-    state, outcome = march(held_wheel(2e-6, fall), 30, locked=[0], first_step=first_step)
+    vehicle, _, outcome = march(held_wheel(2e-6, fall), 30, locked=[0], first_step=first_step)
     assert outcome == loop.RUNNING
-    assert state.start.v[WHEEL_SPIN] > 0.0
+    assert vehicle.points[START].v[WHEEL_SPIN] > 0.0
+
+
+class Ramp(Block):
+    """A torque that is `held` (N m) at `begun` (s) and grows by `rate` (N m/s)."""
+
+    held: float
+    rate: float
+    begun: float
+    breaks: int
+
+    @kernel
+    def torque(self, wheel, time, spin):
+        return self.held + self.rate * (time - self.begun), 0.0
+
+    @kernel
+    def next_break(self):
+        return np.inf
+
+    @kernel
+    def pass_break(self):
+        self.breaks += 1
+
+    @kernel
+    def is_on(self):
+        return True
+
+
+@kernel
+def holds_at(vehicle, time):
+    return wheel_holds(vehicle, 0, time)
+
+
+@kernel
+def values_at(vehicle, stage, time, values):
+    wheel_values(vehicle, vehicle.points[stage], time, values)
 
 
 def test_brake_at_its_limit_holds_while_the_creep_force_grows_no_faster(held_wheel):
     """At `f R = T` the rates decide; below and above it they do not."""
     stop = held_wheel(0.0, 0.0)
-    model, start, torque = stop.model, stop.start, stop.model.brake.torque
+    ramp = Ramp(held=0.0, rate=0.0, begun=0.0, breaks=1)
+    vehicle, torque = with_parts(stop, brake=ramp).vehicle, stop.vehicle.brake.full
+    start, contact = vehicle.points[START], vehicle.contact
 
     def holds(share, fall, torque_rate):
         start.v[WHEEL_HEAVE] = -fall
-        return brake_holds.py_func(model, start, 0, share * torque, torque_rate, 1e-6)
+        ramp.held, ramp.rate = share * torque, torque_rate
+        return holds_at(vehicle, 0.0)
 
-    normal, slope = normal_force(model.contact, start.rail[model.rail.contact[0]] - start.q[WHEEL_HEAVE])
+    normal, slope = contact.normal_force(start.rail[vehicle.rail.contact[0]] - start.q[WHEEL_HEAVE])
     step = 1e-6 * normal
-    creep, after = (creep_force(model.contact, load, start.v[0], start.v[0])[0] for load in (normal, normal + step))
-    rate = model.wagon.wheel_radius * (after - creep) / step * slope * 0.1  # N m/s at 0.1 m/s
+    creep, after = (contact.creep_force(load, start.v[0], start.v[0])[0] for load in (normal, normal + step))
+    rate = vehicle.wagon.wheel_radius * (after - creep) / step * slope * 0.1  # N m/s at 0.1 m/s
     assert holds(1.0, 0.1, 1.01 * rate)
     assert not holds(1.0, 0.1, 0.99 * rate)
     assert holds(1.0, -0.1, -0.99 * rate)
@@ -126,58 +181,75 @@ def test_brake_at_its_limit_holds_while_the_creep_force_grows_no_faster(held_whe
 
 def test_brake_without_torque_lets_go(held_wheel):
     """No division by a torque of nothing: the wheel turns from that instant on, on the rail or off it."""
-    stop = held_wheel(0.0, 0.0)
-    values = np.zeros(EVENT_COUNT)
+    vehicle, values = held_wheel(0.0, 0.0).vehicle, np.zeros(4)
+    vehicle.brake.full = 0.0
+    vehicle.locked[0] = True
     for creep in (0.0, 1e3):
-        stop.start.creep[0] = creep
-        event_values.py_func(stop.model, stop.start, np.array([True, False, False, False]), 0.0, values)
-        assert values[0] < -EVENT_TOLERANCE
+        vehicle.points[START].creep[0] = creep
+        values_at(vehicle, START, 0.0, values)
+        assert values[0] < -SWITCH_TOLERANCE
+
+
+class Switch(Block):
+    """A torque of `first` (N m) that becomes `second` at `change` (s)."""
+
+    first: float
+    second: float
+    change: float
+    breaks: int
+
+    @kernel
+    def torque(self, wheel, time, spin):
+        return (self.first if self.breaks < 2 else self.second), 0.0
+
+    @kernel
+    def next_break(self):
+        return self.change if self.breaks < 2 else np.inf
+
+    @kernel
+    def pass_break(self):
+        self.breaks += 1
+
+    @kernel
+    def is_on(self):
+        return self.breaks > 0
 
 
 @pytest.mark.parametrize(("share", "held"), [(1.1, True), (0.9, False), (0.0, False)])
-def test_torque_that_jumps_holds_a_locked_wheel_or_lets_it_go(held_wheel, monkeypatch, share, held):
+def test_torque_that_jumps_holds_a_locked_wheel_or_lets_it_go(held_wheel, share, held):
     """At a break of the torque the wheel asks for `f R`: it stays locked where the torque bears that afterwards."""
     stop = held_wheel(0.0, 0.0)
-    model = stop.model
-    state = new_state(stop.start, stop.cells, EVENT_COUNT, 1e-3)
-    state.locked[0], state.counts[PHASE] = True, 1
-    after = {1: 2.0 * model.brake.torque, 2: share * model.brake.torque}
-    monkeypatch.setattr(events, "brake_torque", lambda brake, time, phase: after[phase])
-    monkeypatch.setattr(events, "brake_holds", brake_holds.py_func)
-    monkeypatch.setattr(loop, "wheel_holds", events.wheel_holds.py_func)
-    loop._onset.py_func(model, state)
-    assert state.locked.tolist() == [held, False, False, False]
-    assert state.counts[PHASE] == 2
+    torque = stop.vehicle.brake.full
+    brake = Switch(first=2.0 * torque, second=share * torque, change=0.0, breaks=1)
+    vehicle = with_parts(stop, brake=brake).vehicle
+    vehicle.locked[0] = True
+    train = new_train((vehicle,), stop.train.control, 1e-3)
+    assert loop.advance(train, np.zeros((8, 1, columns_of(vehicle).end)), 1) == loop.RUNNING
+    assert vehicle.locked.tolist() == [held, False, False, False]
+    assert brake.breaks == 2
 
 
-def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel, monkeypatch):
+def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel):
     """The torque grows: the middle stage's `f R` exceeds that of its instant, not that of the step's end."""
     stop = held_wheel(0.0, 0.0)
-    model, step, begun = stop.model, 0.1, 3.0
-    slope = model.brake.torque  # N m/s
-    state = new_state(stop.start, stop.cells, EVENT_COUNT, step)
-    state.locked[0] = True
-    state.values_before[:] = 1.0
-    asked = []
-
-    def growing(brake, time, phase):
-        asked.append(time)
-        return slope * time
-
-    monkeypatch.setattr(loop, "brake_torque", growing)
-    monkeypatch.setattr(loop, "event_values", event_values.py_func)
-    monkeypatch.setattr(loop, "shorter_step", shorter_step.py_func)
-    radius = model.wagon.wheel_radius
-    for point in (state.middle, state.end):
-        point.v[0] = stop.start.v[0]
-        point.v[WHEEL_SPIN:] = stop.start.v[WHEEL_SPIN:]
-    state.middle.creep[0] = slope * (begun + 0.7 * step) / radius  # between the torques at 0.586 and at the end
-    state.end.creep[0] = 0.9 * slope * begun / radius
-    shorter = loop._event_step.py_func(model, state, step, begun)
-    assert asked == [begun + GAMMA * step, begun + step]
+    step, begun, slope = 0.1, 3.0, stop.vehicle.brake.full  # N m/s
+    vehicle = with_parts(stop, brake=Ramp(held=slope * begun, rate=slope, begun=begun, breaks=1)).vehicle
+    train = new_train((vehicle,), stop.train.control, step)
+    vehicle.locked[0], train.time = True, begun
+    radius, start = vehicle.wagon.wheel_radius, vehicle.points[START]
+    for stage in (MIDDLE, END):
+        vehicle.points[stage].v[0] = start.v[0]
+        vehicle.points[stage].v[WHEEL_SPIN:] = start.v[WHEEL_SPIN:]
+    vehicle.points[MIDDLE].creep[0] = slope * (begun + 0.7 * step) / radius  # between the torques at 0.586 and the end
+    vehicle.points[END].creep[0] = 0.9 * slope * begun / radius
     value = 1.0 - (begun + 0.7 * step) / (begun + GAMMA * step)
-    assert value < -EVENT_TOLERANCE
-    assert shorter == pytest.approx(GAMMA * step / (1.0 - value))
+    assert value < -SWITCH_TOLERANCE
+    assert event_step(train, step) == pytest.approx(GAMMA * step / (1.0 - value))
+
+
+@kernel
+def event_step(train, step):
+    return _event_step(train, step)
 
 
 @pytest.mark.parametrize("gap", NEARNESS)
@@ -185,38 +257,38 @@ def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel, mo
 def test_wheel_about_to_land_lands(near_event, gap, fall):
     """Gaps relative to the static approach of 0.1 mm, speeds in m/s."""
     stop = near_event(5)
-    model, start = stop.model, stop.start
-    place = WHEEL_HEAVE + 1
-    start.q[place] = start.rail[model.rail.contact[1]] + gap * model.control.approach_scale
+    vehicle, start = stop.vehicle, stop.vehicle.points[START]
+    place, under = WHEEL_HEAVE + 1, vehicle.rail.contact[1]
+    start.q[place] = start.rail[under] + gap * approach_scale(stop)
     start.v[place] = -fall
     start.normal[1] = 0.0
-    state, outcome = march(stop, 60, airborne=[1])
+    vehicle, train, outcome = march(stop, 60, airborne=[1])
     assert outcome == loop.RUNNING
-    assert state.clock[TIME] > 1e-4
-    assert state.lifted[0] >= 1  # or nobody would be warned
-    assert state.largest[1] > 0.0
-    closed = state.start.rail[model.rail.contact[1]] > state.start.q[place]
-    assert closed != state.airborne[1]
+    assert train.time > 1e-4
+    assert vehicle.account.lifted >= 1  # or nobody would be warned
+    assert vehicle.account.largest[1] > 0.0
+    closed = start.rail[under] > start.q[place]
+    assert closed != vehicle.airborne[1]
 
 
 @pytest.mark.parametrize("pressed", NEARNESS)
 @pytest.mark.parametrize("rise", [1e-3, 0.01, 0.3, 3.0])
 def test_wheel_about_to_lift_lifts(near_event, pressed, rise):
     stop = near_event(5)
-    model, start = stop.model, stop.start
-    place = WHEEL_HEAVE + 1
-    approach = pressed * model.control.approach_scale
-    start.q[place] = start.rail[model.rail.contact[1]] - approach
+    vehicle, start = stop.vehicle, stop.vehicle.points[START]
+    place, under = WHEEL_HEAVE + 1, vehicle.rail.contact[1]
+    approach = pressed * approach_scale(stop)
+    start.q[place] = start.rail[under] - approach
     start.v[place] = rise
-    start.normal[1] = model.contact.stiffness * approach**1.5
-    state, outcome = march(stop, 60)
+    start.normal[1] = vehicle.contact.stiffness * approach**1.5
+    vehicle, train, outcome = march(stop, 60)
     assert outcome == loop.RUNNING
-    assert state.clock[TIME] > 1e-4
+    assert train.time > 1e-4
     if rise >= 0.3:  # a slower one is pushed back down before it is up
-        assert state.least[1] == 0.0
-    assert np.all(state.start.normal >= 0.0)
-    open_gap = state.start.rail[model.rail.contact[1]] < state.start.q[place]
-    assert open_gap == state.airborne[1]
+        assert vehicle.account.least[1] == 0.0
+    assert np.all(start.normal >= 0.0)
+    open_gap = start.rail[under] < start.q[place]
+    assert open_gap == vehicle.airborne[1]
 
 
 @pytest.mark.parametrize("step", [1e-3, 3e-3, 1e-2, 2e-2])
@@ -228,12 +300,12 @@ def test_landing_inside_a_long_step_is_found(near_event, step, gap, fall):
     At the coarsest tolerance such a step passes the error test, so the event has to end it.
     """
     stop = near_event(5, "solver.tolerance=1e-2", onset=10.0)
-    model, start = stop.model, stop.start
-    place = WHEEL_HEAVE + 1
-    start.q[place] = start.rail[model.rail.contact[1]] + gap * model.control.approach_scale
+    vehicle, start = stop.vehicle, stop.vehicle.points[START]
+    place, under = WHEEL_HEAVE + 1, vehicle.rail.contact[1]
+    start.q[place] = start.rail[under] + gap * approach_scale(stop)
     start.v[place] = -fall
     start.normal[1] = 0.0
-    state, outcome = march(stop, 40, airborne=[1], first_step=step)
+    vehicle, train, outcome = march(stop, 40, airborne=[1], first_step=step)
     assert outcome == loop.RUNNING
-    assert state.lifted[0] >= 1
-    assert state.counts[REJECTED] < 12 * max(state.work[EVENTS], 1) + 20
+    assert vehicle.account.lifted >= 1
+    assert train.rejected < 12 * max(train.events, 1) + 20

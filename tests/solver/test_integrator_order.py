@@ -1,13 +1,13 @@
 """Order and stability of the time integrator on stiff linear systems with known solutions (model section 11)."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from linear_systems import LinearSystem, linear_stop, march, reached, started, tr_bdf2, wagon_of
+from linear_systems import LinearSystem, linear_stop, march, reached, started, tr_bdf2, wagon_of, with_parts
 from scipy.linalg import eig
 
+from slosh_cli.method import START
 from slosh_cli.track.mem import fitted_nodes
 from slosh_cli.wagon.model import wheel_positions
 
@@ -88,14 +88,14 @@ def test_undamped_oscillator_is_amplified_as_tr_bdf2_does(stiff, z, wheel):
     """One wheel on a spring alone: every step multiplies `v + i omega x` by the method's rational function."""
     _, stop = stiff
     mass, omega, step, steps = 700.0, 40.0, z / 40.0, 3
-    wagon = stop.model.wagon._replace(
+    wagon = stop.vehicle.wagon.replaced(
         mass=np.diag(np.full(15, mass)), damping=np.zeros((15, 15)), stiffness=np.zeros((15, 15))
     )
     wagon.stiffness[wheel, wheel] = mass * omega**2
     x = np.zeros(17)
     x[wheel] = 1e-3
-    lone = replace(stop, model=stop.model._replace(wagon=wagon))
-    point = march(linear_stop(lone, step, steps * step), started(lone, x, 0 * x), step)
+    lone = with_parts(stop, wagon=wagon)
+    point = march(linear_stop(lone, step, steps * step), started(lone, x, 0 * x), step).points[START]
     expected = tr_bdf2(1j * z) ** steps * 1j * omega * 1e-3
     got = point.v[wheel] + 1j * omega * point.q[wheel]
     assert abs(got - expected) < 1e-9 * abs(1j * omega * 1e-3)
@@ -134,7 +134,7 @@ def test_order_2_on_the_moving_rail(shipped):
     """The rail of a wagon at constant speed, let go from a smooth dent: stiff, convected, damped."""
     scenario = shipped("paper_160_solid", "track.domain.length=26 m", "track.domain.element_length=0.9 m")
     _, stop = wagon_of(scenario, 1.0)
-    rail, end, rest = stop.model.rail, 0.02, np.zeros(15)
+    rail, end, rest = stop.vehicle.rail, 0.02, np.zeros(15)
     system = rail_system(rail, 20.0)
     nodes = fitted_nodes(wheel_positions(scenario.wagon), 26.0, 0.9)
     dent = -1e-3 * np.exp(-((nodes / 3.0) ** 2))
@@ -143,7 +143,7 @@ def test_order_2_on_the_moving_rail(shipped):
     errors = []
     for step in (2e-4, 1e-4, 5e-5):
         start = started(stop, rest, rest, shape, 0 * shape)
-        point = march(linear_stop(stop, step, end), start, step)
+        point = march(linear_stop(stop, step, end), start, step).points[START]
         errors.append([np.abs(point.rail - exact_y).max(), np.abs(point.rail_rate - exact_rate).max()])
     orders = [np.log2(np.array(coarse) / fine) for coarse, fine in pairwise(errors)]
     assert np.array(orders) == pytest.approx(2.0, abs=0.1)
@@ -151,8 +151,8 @@ def test_order_2_on_the_moving_rail(shipped):
 
 def test_rail_vibrations_far_faster_than_the_step_die_at_once(shipped):
     _, stop = wagon_of(shipped("paper_160_solid"), 1.0)
-    rng, size = np.random.default_rng(2), 2 * stop.model.rail.nodes
+    rng, size = np.random.default_rng(2), 2 * stop.vehicle.rail.nodes
     shape, rest = 1e-3 * rng.normal(size=size), np.zeros(15)
     shape[[0, size // 2 - 1]] = 0.0
-    point = march(linear_stop(stop, 0.25, 1.0), started(stop, rest, rest, shape, 0 * shape), 0.25)
+    point = march(linear_stop(stop, 0.25, 1.0), started(stop, rest, rest, shape, 0 * shape), 0.25).points[START]
     assert np.abs(point.rail).max() < 1e-3 * np.abs(shape).max()

@@ -113,7 +113,8 @@ def test_kinetic_energy_is_that_of_the_recorded_speeds(run, rates):
 def test_elastic_energy_at_the_start_is_of_springs_contacts_and_rail(run):
     """`2/5 N approach` in every contact; the rail's share by its kernel, which has a test of its own."""
     stop, q = problem(run.scenario), displacements(run)[:, :1]
-    _, rail, _ = rail_ledger(stop.model.rail, stop.start.rail, 0 * stop.start.rail, run.initial_speed_m_s)
+    start = stop.vehicle.points[0].rail
+    _, rail, _ = rail_ledger(stop.vehicle.rail, start, 0 * start, run.initial_speed_m_s)
     springs = sum(unit.stiffness * length**2 for unit, length in elongations_of(run, q))[0]
     approach = (of_wheels(run, "rail_deflection") - of_wheels(run, "heave"))[:, 0]
     contacts = 2 * 0.4 * of_wheels(run, "normal_force")[:, 0] @ approach

@@ -69,13 +69,13 @@ def test_wagon_at_rest_stands_evenly(stop, name):
 
 
 def test_heaves_at_rest_are_those_of_springs_in_series(shipped):
-    start = problem(shipped("paper_80", "braking.initial_speed=0.1 m/s")).start
+    start = problem(shipped("paper_80", "braking.initial_speed=0.1 m/s")).vehicle.points[0]
     car, bogie, wheel = start.q[1], start.q[3], start.q[7:9].mean()
     above_bogie = 9.81 * (21.3e3 + LOAD_MASS) / 4
     assert bogie - car == pytest.approx(above_bogie / 6.0e6, rel=1e-6)
     assert wheel - bogie == pytest.approx((above_bogie + 9.81 * 1.8e3 / 2) / 2 / 2.6e6, rel=1e-6)
     approach = (WEIGHT / 8 / 9.413e10) ** (2 / 3)
-    contact = problem(shipped("paper_80")).model.rail.contact
+    contact = problem(shipped("paper_80")).vehicle.rail.contact
     assert start.rail[contact] - start.q[7:11] == pytest.approx(approach, rel=1e-3)
     assert abs(start.q[2]) < 1e-9  # no pitch but what the rail's lag makes
 
