@@ -8,10 +8,10 @@ class of the block, when a caller is compiled. What kernels may change are numbe
 
 from __future__ import annotations
 
+import ctypes
 import operator
 from functools import cache
-from types import MappingProxyType
-from typing import Any, ClassVar, Self, cast, dataclass_transform, get_type_hints
+from typing import Any, ClassVar, NamedTuple, Self, cast, dataclass_transform, get_type_hints
 
 import numpy as np
 from numba import types
@@ -21,6 +21,7 @@ from numba.core.imputils import lower_getattr_generic, lower_setattr_generic
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from numba.extending import NativeValue, lower_builtin, register_model, typeof_impl, unbox
+from numba.np import numpy_support as np_support
 
 from slosh_cli.arrays import Kind
 
@@ -32,12 +33,10 @@ class Block:
     """Base of all blocks: annotations are the fields, given by keyword.
 
     A field is a `float`, an `int`, an array of `slosh_cli.arrays`, another block, or a tuple of blocks of one class.
-    Numbers may be set afterwards, from Python and in kernels.
+    Numbers may be set afterwards, from Python and in kernels. Raises TypeError for fields that are missing, or that are
+    not what is annotated.
     """
 
-    _memory: np.ndarray[Any, np.dtype[np.int64]]
-    _numbers: np.ndarray[Any, np.dtype[np.float64]]
-    _type: BlockType
     address: ClassVar[int]
 
     def __init_subclass__(cls) -> None:
@@ -46,27 +45,28 @@ class Block:
                 _let_kernels_call(name)
 
     def __init__(self, **given: Any) -> None:
-        own: Any = type(self)
-        hints = _hints(own)
-        if given.keys() != hints.keys():
-            raise TypeError(f"{type(self).__name__} takes {', '.join(hints)}, but {', '.join(given)} were given")
-        values = {name: _as_field(hint, given[name]) for name, hint in hints.items()}
-        kinds = tuple((name, _type_of(hints[name], value)) for name, value in values.items())
-        layout = _layout(kinds)
-        memory = np.zeros(layout.size, dtype=np.int64)
-        put = object.__setattr__
-        put(self, "_memory", memory)
-        put(self, "_numbers", memory.view(np.float64))
-        put(self, "_type", BlockType(type(self), kinds))
-        put(self, "address", memory.ctypes.data)
-        for name, value in values.items():
-            place = layout.places[name]
-            if isinstance(value, (float, int)):
-                (self._numbers if isinstance(value, float) else memory)[place] = value
-                continue
-            words = _words(value)
-            memory[place : place + len(words)] = words
-            put(self, name, value)
+        cls: Any = type(self)
+        plan = _plan(cls)
+        if given.keys() != plan.fields.keys():
+            raise TypeError(f"{cls.__name__} takes {', '.join(plan.fields)}, but {', '.join(given)} were given")
+        memory = np.zeros(plan.size, dtype=np.int64)
+        own, parts = self.__dict__, []
+        own["_memory"], own["_numbers"], own["address"] = memory, memory.view(np.float64), _address(memory)
+        for name, field in plan.fields.items():
+            value = given[name]
+            if field.hint is float:
+                own["_numbers"][field.place] = value
+            elif field.hint is int:
+                memory[field.place] = value
+            elif field.array is not None:
+                own[name] = array = _fitting(field.array, value)
+                words = (array.size, array.itemsize, _address(array), *array.shape, *array.strides)
+                memory[field.place + 2 : field.place + field.words] = words
+            else:
+                own[name] = part = _Row(value) if isinstance(value, tuple) else value
+                parts.append(part.kind)
+                memory[field.place] = part.address
+        own["kind"] = _kind_of(cls, tuple(parts))
 
     def __getattr__(self, name: str) -> Any:
         place, view = self._number(name)
@@ -77,102 +77,112 @@ class Block:
         view[place] = value
 
     def _number(self, name: str) -> tuple[int, Any]:
-        kinds = {} if name.startswith("_") else dict(self._type.kinds)
-        if not isinstance(kinds.get(name), types.Number):
-            raise AttributeError(f"{type(self).__name__} has no number {name!r}")
-        view = self._numbers if kinds[name] is types.float64 else self._memory
-        return _layout(self._type.kinds).places[name], view
+        cls: Any = type(self)
+        field = _plan(cls).fields.get(name)
+        if field is None or field.hint not in (float, int):
+            raise AttributeError(f"{cls.__name__} has no number {name!r}")
+        return field.place, self.__dict__["_numbers" if field.hint is float else "_memory"]
 
     @classmethod
     def blank(cls, size: int = 0, **given: Any) -> Self:
         """A block whose numbers are zero and whose vectors hold `size` zeros, but for what is `given`."""
         own: Any = cls
-        for name, hint in _hints(own).items():
+        for name, field in _plan(own).fields.items():
             if name not in given:
-                kind = _kind(hint)
-                given[name] = hint(0) if kind is None else np.zeros(kind.dimensions * (size,), dtype=kind.dtype)
+                array = field.array
+                given[name] = 0 if array is None else np.zeros(array.dimensions * (size,), dtype=array.dtype)
         return cls(**given)
 
     def replaced(self, **changes: Any) -> Self:
         """A copy with other values of some fields; arrays and parts that stay are shared."""
-        return type(self)(**{name: changes.get(name, getattr(self, name)) for name, _ in self._type.kinds})
+        cls: Any = type(self)
+        return type(self)(**{name: changes.get(name, getattr(self, name)) for name in _plan(cls).fields})
 
 
 class _Row(tuple[Block, ...]):
-    """Blocks of one class beside the list of their addresses, led by their number."""
+    """Blocks of one class; `address` is where the list of their addresses begins, led by their number."""
 
-    addresses: np.ndarray[Any, np.dtype[np.int64]]
-
-    def __new__(cls, blocks: tuple[Block, ...]) -> Self:
-        row = super().__new__(cls, blocks)
-        if len({block._type for block in blocks}) != 1:
+    def __init__(self, blocks: tuple[Block, ...]) -> None:
+        if len({block.kind for block in blocks}) != 1:
             raise TypeError("a tuple of blocks holds one or more of the same kind")
-        row.addresses = np.array([len(blocks), *(block.address for block in blocks)], dtype=np.int64)
-        return row
+        self._list = np.array([len(blocks), *(block.address for block in blocks)], dtype=np.int64)
+        self.address, self.kind = _address(self._list), RowType(blocks[0].kind)
 
 
-class _Layout:
-    """Where a block's fields stand in its memory, in words."""
+class _Array(NamedTuple):
+    """What an array field asks for."""
 
-    def __init__(self, kinds: tuple[tuple[str, Any], ...]) -> None:
-        places, size = {}, 0
-        for name, kind in kinds:
-            places[name] = size
-            size += 5 + 2 * kind.ndim if isinstance(kind, types.Array) else 1  # the members of numba's own array
-        self.places, self.size = MappingProxyType(places), size
+    dtype: np.dtype[Any]
+    dimensions: int
+
+
+class _Field(NamedTuple):
+    """A field of a class of blocks: what is annotated, and the words that it takes in a block's memory."""
+
+    hint: Any
+    array: _Array | None
+    place: int
+    words: int
+
+
+class _Plan(NamedTuple):
+    """The fields of a class of blocks, and how many words of memory they take."""
+
+    fields: dict[str, _Field]
+    size: int
 
 
 @cache
-def _layout(kinds: tuple[tuple[str, Any], ...]) -> _Layout:
-    return _Layout(kinds)
+def _plan(cls: Any) -> _Plan:
+    fields, size = {}, 0
+    for name, hint in get_type_hints(cls, include_extras=True).items():
+        if name != "address":
+            notes = (note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Kind))
+            array = next((_Array(np.dtype(note.dtype), note.dimensions) for note in notes), None)
+            words = 5 + 2 * array.dimensions if array else 1  # the members of numba's own array
+            fields[name] = _Field(hint, array, size, words)
+            size += words
+    return _Plan(fields, size)
+
+
+def _address(array: Any) -> int:
+    return array.ctypes.data if array.size == 0 else ctypes.addressof(_BYTE.from_buffer(array))
+
+
+_BYTE = ctypes.c_char
+
+
+def _fitting(wanted: _Array, value: Any) -> Any:
+    """The value as an array of the kind that is asked for."""
+    array = value
+    if not (isinstance(value, np.ndarray) and value.dtype is wanted.dtype and value.flags.carray):
+        array = np.require(value, wanted.dtype, ("C", "A"))
+    if array.ndim != wanted.dimensions:
+        raise TypeError(f"an array of {wanted.dimensions} dimensions is needed, but it has {array.ndim}")
+    return array
 
 
 @cache
-def _hints(cls: Any) -> dict[str, Any]:
-    hints = get_type_hints(cls, include_extras=True)
-    return {name: hints[name] for name in hints if not name.startswith("_") and name != "address"}
-
-
-def _kind(hint: Any) -> Kind | None:
-    """The kind of array that an annotation asks for; None where it asks for something else."""
-    return next((note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Kind)), None)
-
-
-def _as_field(hint: Any, value: Any) -> Any:
-    """The value as it is kept: an array of the kind that is asked for, a number, a block, a row of blocks."""
-    kind = _kind(hint)
-    if kind is not None:
-        array = np.require(value, kind.dtype, ("C", "A"))
-        if array.ndim != kind.dimensions:
-            raise TypeError(f"an array of {kind.dimensions} dimensions is needed, but it has {array.ndim}")
-        return array
-    if hint in (float, int):
-        return hint(value)
-    return _Row(tuple(value)) if isinstance(value, tuple) else value
-
-
-def _type_of(hint: Any, value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return types.Array(getattr(types, str(value.dtype) if value.dtype != np.bool_ else "bool_"), value.ndim, "C")
-    if isinstance(value, _Row):
-        return RowType(value[0]._type)
-    if isinstance(value, Block):
-        return value._type
-    return types.float64 if hint is float else types.int64
-
-
-def _words(value: Any) -> list[int]:
-    if isinstance(value, np.ndarray):
-        return [0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides]
-    return [value.addresses.ctypes.data if isinstance(value, _Row) else value.address]
+def _kind_of(cls: Any, parts: tuple[Any, ...]) -> BlockType:
+    """numba's type of a block of `cls` with such parts."""
+    kinds: dict[str, Any] = {}
+    rest = iter(parts)
+    for name, field in _plan(cls).fields.items():
+        if field.array is not None:
+            kinds[name] = types.Array(np_support.from_dtype(field.array.dtype), field.array.dimensions, "C")
+        elif field.hint in (float, int):
+            kinds[name] = types.float64 if field.hint is float else types.int64
+        else:
+            kinds[name] = next(rest)
+    return BlockType(cls, kinds)
 
 
 class BlockType(types.Type):
     """numba's type of a block: its class, and the types of its parts where these are open."""
 
-    def __init__(self, cls: type[Block], kinds: tuple[tuple[str, Any], ...]) -> None:
+    def __init__(self, cls: Any, kinds: dict[str, Any]) -> None:
         self.cls, self.kinds = cls, kinds
-        parts = [str(kind) for _, kind in kinds if isinstance(kind, (BlockType, RowType))]
+        parts = [str(kind) for kind in kinds.values() if isinstance(kind, (BlockType, RowType))]
         super().__init__(name=f"{cls.__module__}.{cls.__qualname__}" + (f"({', '.join(parts)})" if parts else ""))
 
 
@@ -189,8 +199,8 @@ register_model(RowType)(models.OpaqueModel)
 
 
 @typeof_impl.register(Block)
-def _typeof_block(value: Block, context: Any) -> BlockType:
-    return value._type
+def _typeof_block(value: Block, context: Any) -> Any:
+    return value.kind
 
 
 @unbox(BlockType)
@@ -208,7 +218,7 @@ class _Fields(AttributeTemplate):
     key = BlockType
 
     def generic_resolve(self, block: Any, name: str) -> Any:  # type: ignore[override]
-        kind = dict(block.kinds).get(name)
+        kind = block.kinds.get(name)
         if kind is not None:
             return kind
         if not isinstance(getattr(block.cls, name, None), CPUDispatcher):
@@ -228,8 +238,8 @@ def _kernel_type(block: BlockType, name: str) -> Any:
 
 def _pointer_to(context: Any, builder: Any, block: BlockType, value: Any, name: str) -> tuple[Any, Any]:
     """The model of a field, and a pointer to it."""
-    place = _layout(block.kinds).places[name]
-    model = context.data_model_manager[dict(block.kinds)[name]]
+    place = _plan(block.cls).fields[name].place
+    model = context.data_model_manager[block.kinds[name]]
     pointer = cgutils.pointer_add(builder, value, place * _WORD, model.get_data_type().as_pointer())
     return model, pointer
 

@@ -112,19 +112,18 @@ def _node(places, start, place):
 @kernel
 def depth_of(table, area):
     """Depth (m) of a wetted area (m^2): the table's cubic, inverted by Newton's method; above it the slot."""
-    last = table.depth.size - 1
-    if area >= table.area[last]:
-        return table.depth[last] + (area - table.area[last]) / table.slot_width
+    depths, areas, widths = table.depth, table.area, table.width
+    last = depths.size - 1
+    if area >= areas[last]:
+        return depths[last] + (area - areas[last]) / table.slot_width
     if area <= 0.0:
         return 0.0
-    low = _node(table.area, table.area_start, area)
+    low = _node(areas, table.area_start, area)
     high = low + 1
-    depth = table.depth[low] + (table.depth[high] - table.depth[low]) * (area - table.area[low]) / (
-        table.area[high] - table.area[low]
-    )
-    left, right = table.depth[low], table.depth[high]
+    left, right = depths[low], depths[high]
+    depth = left + (right - left) * (area - areas[low]) / (areas[high] - areas[low])
     for _ in range(20):
-        value, slope = _cubic(table.depth, table.area, table.width, low, depth)
+        value, slope = _cubic(depths, areas, widths, low, depth)
         change = (area - value) / slope if slope > 0.0 else 0.0
         following = min(max(depth + change, left), right)
         change = following - depth
@@ -156,16 +155,16 @@ def _cubic(places, values, slopes, k, place):
 @kernel
 def section_at(table, depth):
     """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
-    last = table.depth.size - 1
-    if depth >= table.depth[last]:
-        head = depth - table.depth[last]
-        area = table.area[last] + table.slot_width * head
-        return area, table.pressure[last] + head * (table.area[last] + 0.5 * table.slot_width * head), table.slot_width
+    depths, areas, pressures = table.depth, table.area, table.pressure
+    last = depths.size - 1
+    if depth >= depths[last]:
+        head, slot = depth - depths[last], table.slot_width
+        return areas[last] + slot * head, pressures[last] + head * (areas[last] + 0.5 * slot * head), slot
     if depth <= 0.0:
         return 0.0, 0.0, 1.0
-    k = _node(table.depth, table.depth_start, depth)
-    area, width = _cubic(table.depth, table.area, table.width, k, depth)
-    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
+    k = _node(depths, table.depth_start, depth)
+    area, width = _cubic(depths, areas, table.width, k, depth)
+    pressure, _ = _cubic(depths, pressures, areas, k, depth)
     return area, pressure, max(width, 1e-12)
 
 

@@ -53,18 +53,20 @@ class ShallowLiquid(Block):
 @kernel
 def liquid_depths(liquid, area, depth):
     """Depths (cells,) m of the wetted areas (cells,) m^2, into `depth`."""
+    table = liquid.table
     for i in range(liquid.cells):
-        depth[i] = depth_of(liquid.table, area[i])
+        depth[i] = depth_of(table, area[i])
 
 
 @kernel
 def _keep_wet(liquid, area, mass, step, kept):
     """Scale the fluxes out of a cell, into `kept`, so that it cannot lose more than it holds; mass stays conserved."""
-    for i in range(liquid.cells + 1):
+    cells, spacing = liquid.cells, liquid.spacing
+    for i in range(cells + 1):
         kept[i] = mass[i]
-    for i in range(liquid.cells):
+    for i in range(cells):
         outflow = step * (max(kept[i + 1], 0.0) - min(kept[i], 0.0))
-        held = area[i] * liquid.spacing
+        held = area[i] * spacing
         if outflow > held:
             share = held / outflow
             if kept[i + 1] > 0.0:
@@ -91,10 +93,11 @@ def _euler(liquid, area, flow, still, mass, momentum, source, step, share, kept,
 
     Cells of a full column, marked in `still`, neither gain nor lose.
     """
+    spacing = liquid.spacing
     _keep_wet(liquid, area, mass, step, kept)
     for i in range(liquid.cells):
-        area_end[i] = max(area[i] - step * (kept[i + 1] - kept[i]) / liquid.spacing, 0.0)
-        change = source[i] - (momentum[i + 1] - momentum[i]) / liquid.spacing
+        area_end[i] = max(area[i] - step * (kept[i + 1] - kept[i]) / spacing, 0.0)
+        change = source[i] - (momentum[i + 1] - momentum[i]) / spacing
         flow_end[i] = flow[i] + step * change if still[i] == 0.0 else flow[i]
     _calm_films(liquid, area_end, flow_end, share)
 
@@ -105,9 +108,9 @@ def _add_impulses(liquid, area, flow, push, acceleration, duration, sums):
 
     The moment (about the bottom centre, nose-down) is that of the weight's distribution and of the walls' pressures.
     """
-    arm = carried = 0.0
-    for i in range(liquid.cells):
-        arm += area[i] * (i + 0.5 - 0.5 * liquid.cells)
+    arm, carried, cells = 0.0, 0.0, liquid.cells
+    for i in range(cells):
+        arm += area[i] * (i + 0.5 - 0.5 * cells)
         carried += flow[i]
     weight = duration * liquid.density
     sums[0] += weight * push[0]

@@ -66,27 +66,27 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
 
     Closed bulkheads and columns at rest (`still`) are walls.
     """
-    cells, mild = liquid.cells, MILD / liquid.cells
-    tilt = acceleration * liquid.spacing / liquid.gravity
-    last = liquid.table.area.size - 1
-    dry, roof = DRY * liquid.table.area[last], liquid.table.depth[last]
+    cells, mild, loss, gravity, table = liquid.cells, MILD / liquid.cells, liquid.loss, liquid.gravity, liquid.table
+    tilt = acceleration * liquid.spacing / gravity
+    last = table.area.size - 1
+    dry, roof = DRY * table.area[last], table.depth[last]
     for i in range(cells):
         speed = flow[i] / area[i] if area[i] > dry else 0.0
         surface_b = surface_a = 0.0
         speed_b, speed_a = 2.0 * speed, -2.0 * speed
         wet = area[i] > dry
-        if i > 0 and liquid.loss[i] < math.inf and still[i - 1] == 0.0:
+        if i > 0 and loss[i] < math.inf and still[i - 1] == 0.0:
             wet = wet and area[i - 1] > dry
             surface_b = depth[i] - depth[i - 1] + tilt
             speed_b = speed - (flow[i - 1] / area[i - 1] if area[i - 1] > dry else 0.0)
-        if i < cells - 1 and liquid.loss[i + 1] < math.inf and still[i + 1] == 0.0:
+        if i < cells - 1 and loss[i + 1] < math.inf and still[i + 1] == 0.0:
             wet = wet and area[i + 1] > dry
             surface_a = depth[i + 1] - depth[i] + tilt
             speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
         slope_depth[i] = slope_speed[i] = 0.0
         if wet:
             slope_depth[i] = _limited(surface_b, surface_a, mild * depth[i])
-            slope_speed[i] = _limited(speed_b, speed_a, mild * math.sqrt(liquid.gravity * depth[i]))
+            slope_speed[i] = _limited(speed_b, speed_a, mild * math.sqrt(gravity * depth[i]))
         if abs(depth[i] - roof) < 0.5 * abs(slope_depth[i] - tilt):  # the surface meets the roof inside the cell
             slope_depth[i] = 0.0
         slope_depth[i] -= tilt
@@ -94,7 +94,7 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
         # force jumps at no acceleration. A still liquid's surface may
         room = 2.0 * max(abs(depth[i] - roof) - LEDGE * roof, 0.0)
         if abs(slope_depth[i]) > room and area[i] > dry:
-            flowing = min((flow[i] / area[i]) ** 2 / (STILL * STILL * liquid.gravity * depth[i]), 1.0)
+            flowing = min((flow[i] / area[i]) ** 2 / (STILL * STILL * gravity * depth[i]), 1.0)
             slope_depth[i] += flowing * (math.copysign(room, slope_depth[i]) - slope_depth[i])
         # neither end of a cell lies below the bed
         slope_depth[i] = min(max(slope_depth[i], -2.0 * depth[i]), 2.0 * depth[i])
@@ -144,11 +144,11 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
     `work` is (2, cells + 1) scratch. Cells run from the rear wall forward; the source balances the pressures of a still
     tilted liquid to rounding.
     """
-    cells, table, gravity = liquid.cells, liquid.table, liquid.gravity
+    cells, table, gravity, loss, spacing = liquid.cells, liquid.table, liquid.gravity, liquid.loss, liquid.spacing
     slope_depth, slope_speed = work[0], work[1]
     _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed)
     dry = DRY * table.area[table.area.size - 1]
-    tilt = acceleration * liquid.spacing / gravity
+    tilt = acceleration * spacing / gravity
     area_b = flow_b = pressure_b = 0.0
     width_b = 1.0
     fastest = 1e-9
@@ -165,7 +165,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         jump = 0.0
         if i == 0:  # the wall mirrors the state
             area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
-        if i > 0 and still[i - 1] + still[i] > 0.0 and liquid.loss[i] < math.inf:
+        if i > 0 and still[i - 1] + still[i] > 0.0 and loss[i] < math.inf:
             mass[i] = 0.0
             momentum[i], signal = _column_face(
                 gravity,
@@ -180,9 +180,9 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
                 pressure_l,
                 width_l,
             )
-        elif liquid.loss[i] > 0.0:
+        elif loss[i] > 0.0:
             mass[i], before, after, signal = _baffle(
-                gravity, liquid.loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+                gravity, loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
             )
             if still[i - 1] > 0.0:
                 before = 0.0  # `column_push` adds what a column bears
@@ -199,7 +199,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         fastest = max(fastest, signal if i > 0 or still[0] == 0.0 else 0.0)
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
-        source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / liquid.spacing
+        source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / spacing
         area_b, flow_b, pressure_b, width_b = area_r, flow_r, pressure_r, width_r
     _, momentum[cells], signal = _hll(
         gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b

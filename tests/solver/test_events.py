@@ -87,7 +87,7 @@ def held_wheel(near_event):
 def state_of(stop):
     """The arrays of the start, which a run changes."""
     point = stop.vehicle.points[START]
-    return [getattr(point, name) for name, _ in point._type.kinds if name != "stage"]
+    return [getattr(point, name) for name in point.kind.kinds if name != "stage"]
 
 
 @pytest.mark.parametrize("first_step", [1e-5, 1e-4, 1e-3])
