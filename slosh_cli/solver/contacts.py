@@ -197,7 +197,8 @@ def _contact_gaps(vehicle, base, point, step, time):
     for i in range(wagon.wheels):
         place = wagon.first_wheel + i
         taken, heave = a[place], _body_acceleration(scratch, place)
-        approach = contact.approach(free[i], base_q[place]) - square * taken
+        ahead, turned = base_q[0] + square * a[0], base_q[first_spin + i] + square * a[first_spin + i]
+        approach = contact.approach(i, free[i], base_q[place], ahead, turned) - square * taken
         for j in range(wagon.wheels):
             approach -= square * between[i, j] * (normal[j] - before[j])
         force, slope = contact.normal_force(approach)

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import DIAGONAL, END, MIDDLE, OUTER, START
-from slosh_cli.solver.vehicle import BRAKE, CREEP, FOUNDATION, LOSSES, RESISTANCE, SLOPE, SLOSH_DAMPING, SUSPENSION
+from slosh_cli.solver.vehicle import (
+    BRAKE,
+    CREEP,
+    FOUNDATION,
+    GRADIENT,
+    LOSSES,
+    RESISTANCE,
+    SLOPE,
+    SLOSH_DAMPING,
+    SUSPENSION,
+)
 from slosh_cli.track.moving import rail_ledger
 from slosh_cli.vectors import fill
 from slosh_cli.wagon.model import CAR_PITCH
@@ -15,17 +25,18 @@ KINETIC, ELASTIC, SLOSH = range(3)
 
 @inner_kernel
 def balance(vehicle, stage, energies):
-    """Energies (J) of a vehicle at a stage into `energies` (3,), powers (W) into its point's `power` (7,)."""
+    """Energies (J) of a vehicle at a stage into `energies` (3,), powers (W) into its point's `power`."""
     wagon, point, ride = vehicle.wagon, vehicle.points[stage], vehicle.ride
     mass, stiffness, damping, weight = wagon.mass, wagon.stiffness, wagon.damping, wagon.weight
     q, v, power = point.q, point.v, point.power
-    kinetic = elastic = gravity = loss = 0.0
+    kinetic = elastic = gravity = loss = momentum_along = 0.0
     for i in range(q.size):
         momentum = force = damped = 0.0
         for j in range(q.size):
             momentum += mass[i, j] * v[j]
             force += stiffness[i, j] * q[j]
             damped += damping[i, j] * v[j]
+        momentum_along += mass[i, 0] * v[i]
         kinetic += 0.5 * v[i] * momentum
         elastic += 0.5 * q[i] * force
         loss += v[i] * damped
@@ -37,6 +48,7 @@ def balance(vehicle, stage, energies):
     power[SUSPENSION], power[FOUNDATION], power[SLOSH_DAMPING] = loss, foundation, slosh_loss
     resistance, _ = vehicle.line.resisting_force(v[0])
     power[RESISTANCE] = resistance * v[0]
+    power[GRADIENT] = -ride.pull[stage] * (momentum_along + vehicle.liquid.momentum(ride, stage))
     energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic
     energies[ELASTIC] = elastic - tilt + rail_elastic + _balance_contacts(vehicle, point)
     energies[SLOSH] = gravity + tilt + slosh_potential
@@ -46,14 +58,15 @@ def balance(vehicle, stage, energies):
 def _balance_contacts(vehicle, point):
     """Elastic energy (J) of the contacts; their powers and the brakes' into the point's."""
     wagon, contact, under = vehicle.wagon, vehicle.contact, vehicle.rail.contact
-    rail, v, power = point.rail, point.v, point.power
+    rail, q, v, power = point.rail, point.q, point.v, point.power
     slopes, speed, energy = rail.size // 2, v[0], 0.0
     for i in range(wagon.wheels):
         spin = v[wagon.first_spin + i]
         power[BRAKE] += point.torque[i] * (spin - v[wagon.frame[i]])
         power[CREEP] += point.creep[i] * (speed - wagon.wheel_radius * spin)
         power[SLOPE] += point.normal[i] * speed * rail[slopes + under[i]]
-        energy += contact.energy(contact.approach(rail[under[i]], point.q[wagon.first_wheel + i]))
+        heave, angle = q[wagon.first_wheel + i], q[wagon.first_spin + i]
+        energy += contact.energy(contact.approach(i, rail[under[i]], heave, q[0], angle))
     return energy
 
 

@@ -88,7 +88,8 @@ def _interpolate_wheels(vehicle, row, time, cubic, parabola):
             + cubic[2] * end.rail[node]
             + cubic[3] * end.rail_rate[node]
         )
-        normal, _ = contact.normal_force(contact.approach(rail, row[1 + wagon.first_wheel + i]))
+        heave, angle = row[1 + wagon.first_wheel + i], row[1 + wagon.first_spin + i]
+        normal, _ = contact.normal_force(contact.approach(i, rail, heave, row[1], angle))
         creep = _recorded_creep(vehicle, i, normal, speed - radius * spin, speed, parabola)
         torque, _ = vehicle.brake.torque(i, time, spin)
         row[first + i] = normal

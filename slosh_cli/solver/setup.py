@@ -97,7 +97,7 @@ def _vehicle(scenario: Scenario) -> Vehicle:
         liquid,
         rail,
         contact,
-        Line(resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic])),
+        Line.blank(resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic])),
         StepBrake.blank(full=scenario.braking.torque, onset=scenario.braking.onset),
         _scales(scenario, wagon, liquid, start),
         start,

@@ -80,23 +80,26 @@ def _prepare_responses(vehicle):
 
 
 @inner_kernel
-def _free_accelerations(vehicle, base, step):
-    """The bodies' accelerations under all that does not depend on the stage's own, into `scratch.free_bodies`."""
-    wagon, right = vehicle.wagon, vehicle.scratch.free_bodies
-    damping, stiffness, weight, tank_row, q, v = (
+def _free_accelerations(vehicle, base, point, step):
+    """The bodies' accelerations under all that does not depend on the stage's own, into `scratch.free_bodies`.
+
+    Gravity's pull along the track is that of the place where the guessed acceleration leads.
+    """
+    wagon, right, q, v = vehicle.wagon, vehicle.scratch.free_bodies, base.q, base.v
+    mass, damping, stiffness, weight, tank_row = (
+        wagon.mass,
         wagon.damping,
         wagon.stiffness,
         wagon.weight,
         wagon.tank_row,
-        base.q,
-        base.v,
     )
+    vehicle.scratch.pull = pull = vehicle.line.pull_at(q[0] + step * step * point.a[0])
     for i in range(right.size):
-        total = weight[i]
+        total = weight[i] + pull * mass[i, 0]
         for j in range(right.size):
             total -= damping[i, j] * v[j] + stiffness[i, j] * q[j]
         right[i] = total
-    force, moment = vehicle.liquid.push(BASE, step, q[CAR_PITCH])
+    force, moment = vehicle.liquid.push(BASE, step, q[CAR_PITCH], pull)
     for i in range(right.size):
         right[i] += force * tank_row[i]
     right[CAR_PITCH] += moment
@@ -112,7 +115,7 @@ def solve_stage(train, stage, step, time):
     """
     vehicles, tolerance = train.vehicles, train.control.local_tolerance
     for k in range(len(vehicles)):
-        _free_accelerations(vehicles[k], vehicles[k].points[BASE], step)
+        _free_accelerations(vehicles[k], vehicles[k].points[BASE], vehicles[k].points[stage], step)
     for _ in range(_MOST_PASSES):
         for k in range(len(vehicles)):
             _open_pass(vehicles[k], vehicles[k].points[stage], step)
@@ -261,12 +264,13 @@ def _finish(vehicle, point, step, time):
 
 @inner_kernel
 def read_ride(vehicle, point):
-    """The tank's motion at the point, for the liquid."""
+    """The tank's motion at the point, for the liquid; gravity's pull is that of the last stage that was solved."""
     ride, stage, tank_row, q, v, a = vehicle.ride, point.stage, vehicle.wagon.tank_row, point.q, point.v, point.a
     speed = acceleration = 0.0
     for i in range(vehicle.wagon.first_spin):
         speed += tank_row[i] * v[i]
         acceleration += tank_row[i] * a[i]
-    ride.speed[stage], ride.acceleration[stage] = speed, acceleration
+    ride.pull[stage] = vehicle.scratch.pull
+    ride.speed[stage], ride.acceleration[stage] = speed, acceleration - ride.pull[stage]
     ride.pitch[stage], ride.pitch_rate[stage] = q[CAR_PITCH], v[CAR_PITCH]
     ride.pitch_acceleration[stage] = a[CAR_PITCH]

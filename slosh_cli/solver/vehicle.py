@@ -22,7 +22,7 @@ from slosh_cli.wagon.model import WagonModel
 
 Liquid = FrozenLiquid | ModalLiquid | CellLiquid
 """Kinds of liquid."""
-BRAKE, CREEP, SUSPENSION, FOUNDATION, RESISTANCE, SLOSH_DAMPING, SLOPE, LOSSES = range(8)
+BRAKE, CREEP, SUSPENSION, FOUNDATION, RESISTANCE, SLOSH_DAMPING, GRADIENT, SLOPE, LOSSES = range(9)
 """Places in a point's powers and in the work done so far, and their number: how energy leaves or enters (`ledger`)."""
 
 
@@ -41,8 +41,7 @@ class Scales(Block):
 class Point(Block):
     """A vehicle at one instant: coordinates and rail with two time derivatives, contact forces, powers.
 
-    `q`, `v`, `a` (coordinates,); `rail...` (2 n,); `normal`, `creep` (N) and `torque` (N m) (wheels,); `power` (7,) in
-    W, in the order of the ledger's losses. `stage` is its place among the points of a step (`method.START`, ...).
+    `q`, `v`, `a` (coordinates,); `rail...` (2 n,); `normal`, `creep` (N), `torque` (N m) (wheels,); `power` (LOSSES,) W, in the order of the ledger's losses. `stage` is its place among the points of a step (`method.START`, ...).
     """
 
     stage: int
@@ -94,6 +93,7 @@ class Scratch(Block):
     torque_slope: Vector
     resistance_slope: float
     along_gap: float
+    pull: float
     size_before: float
     load_size_before: float
     moved: float
@@ -106,9 +106,9 @@ class Scratch(Block):
 class Account(Block):
     """What a vehicle sums up over a run, beside what it was before the step in hand.
 
-    `energies` (3,): kinetic, elastic, gravity's and slosh, J; `losses` (7,) J; `least`, `largest` (wheels,) wheel loads
-    (N) and `locked_time` (wheels,) s since its onset, at `onset_time` s and `onset_position` m; `load_seconds` N s of
-    all wheels in `seconds` since then; `surface` the largest rise, m; `lifted` how often wheels lifted off or landed;
+    `energies` (3,): kinetic, elastic, gravity's and slosh, J; `losses` (LOSSES,) J; `least`, `largest` (wheels,) wheel
+    loads (N) and `locked_time` (wheels,) s since its onset, at `onset_time` s and `onset_position` m; `load_seconds` N s
+    of all wheels in `seconds` since then; `surface` the largest rise, m; `lifted` how often wheels lifted off or landed;
     the rest counts what was computed.
     """
 

@@ -130,10 +130,11 @@ class CellLiquid(Block):
         return following, centre * following, centre * centre * following
 
     @inner_kernel
-    def push(self, base, implicit, pitch):
+    def push(self, base, implicit, pitch, pull):
         """The mean push of the step at acceleration 0, without a step that at the start."""
         if implicit > 0.0:
-            return self.held_force, self.held_moment
+            led = self.following * pull
+            return self.held_force + led, self.held_moment + self.shallow.centre_height * led
         return self.start_force, self.start_moment
 
     @inner_kernel
@@ -163,15 +164,18 @@ class CellLiquid(Block):
         fill(sums, 0.0)
         first = (halfway - before) / (GAMMA * step) - 0.5 * gravity * (pitch[START] + pitch[MIDDLE])
         second = (after - halfway) / ((1.0 - GAMMA) * step) - 0.5 * gravity * (pitch[MIDDLE] + pitch[END])
+        first -= 0.5 * (ride.pull[START] + ride.pull[MIDDLE])
+        second -= 0.5 * (ride.pull[MIDDLE] + ride.pull[END])
+        given = 0.5 * step * (GAMMA * ride.pull[START] + ride.pull[MIDDLE] + (1.0 - GAMMA) * ride.pull[END])
         if not liquid_evolve(liquid, area, flow, depth, first, GAMMA * step, self.work, sums):
             return -1.0
         momentum_halfway = _momentum_in_tank(liquid, cells)
         if not liquid_evolve(liquid, area, flow, depth, second, (1.0 - GAMMA) * step, self.work, sums):
             return -1.0
         momentum_end = _momentum_in_tank(liquid, cells)
-        impulse = momentum - momentum_end - liquid.mass * (after - before)
+        impulse = momentum - momentum_end - liquid.mass * (after - before - given)
         last = self.following * (ride.acceleration[END] + centre * ride.pitch_acceleration[END])
-        mean = self.following * ((after - before) / step)
+        mean = self.following * ((after - before - given) / step)
         self.force, self.moment = self.held_force - mean, self.held_moment - centre * mean
         self.end_force, self.end_moment = self.held_force - last, self.held_moment - centre * last
         self.owed_force = self.left_force + impulse - step * self.force
@@ -200,6 +204,15 @@ class CellLiquid(Block):
         kinetic += speed * _momentum_in_tank(liquid, cells) + 0.5 * liquid.mass * speed * speed
         tilt = 0.5 * liquid.mass * liquid.gravity * liquid.centre_height * pitch
         return kinetic, potential - (_weights_moment(liquid, cells) + tilt) * pitch, 0.0
+
+    @inner_kernel
+    def momentum(self, ride, stage):
+        """That of all the liquid, which the wagon does not carry along the track."""
+        liquid, cells = self.shallow, self.start
+        if stage == END:
+            cells = self.end
+        speed = ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
+        return liquid.mass * speed + _momentum_in_tank(liquid, cells)
 
     @inner_kernel
     def highest(self):

@@ -15,11 +15,13 @@ from slosh_cli.compiled import inner_kernel
 class Ride(Block):
     """The motion that a vehicle gives its tank, at the stages of a step (`method.START`, ...); each (3,).
 
-    `speed` m/s and `acceleration` m/s^2 along the track are those of the tank's bottom centre, `pitch` rad, nose-down.
+    Along the track they are those of the tank's bottom centre: `speed` m/s, `acceleration` m/s^2 without the `pull`
+    (m/s^2) that gravity gives to every mass on a gradient. `pitch` rad is nose-down.
     """
 
     speed: Vector
     acceleration: Vector
+    pull: Vector
     pitch: Vector
     pitch_rate: Vector
     pitch_acceleration: Vector
@@ -51,14 +53,15 @@ class FrozenLiquid(Block):
         return 0.0, 0.0, 0.0
 
     @inner_kernel
-    def push(self, base, implicit, pitch):
+    def push(self, base, implicit, pitch, pull):
         """Force (N) and moment (N m) on the tank at a stage but for what follows its acceleration; `base` is the place
-        of the stage without its own accelerations, `pitch` (rad) the tank's there."""
+        of the stage without its own accelerations, `pitch` (rad) the tank's there, `pull` (m/s^2) as for `Ride`."""
         return 0.0, 0.0
 
     @inner_kernel
     def follow(self, stage, base, implicit, pitch, acceleration, pitch_acceleration):
-        """Move the liquid to a stage whose accelerations are known; `base` and `pitch` as for `push`."""
+        """Move the liquid to a stage whose accelerations are known, that along the track without gravity's pull; `base`
+        and `pitch` as for `push`."""
 
     @inner_kernel
     def error(self, step, implicit, speed, pitch, pitch_rate):
@@ -76,6 +79,11 @@ class FrozenLiquid(Block):
     def energy(self, ride, stage):
         """Kinetic and potential energy (J) beside those of the frozen load, and the power (W) that damping takes."""
         return 0.0, 0.0, 0.0
+
+    @inner_kernel
+    def momentum(self, ride, stage):
+        """Momentum (N s) along the track beside that of the frozen load, as far as the wagon carries that."""
+        return 0.0
 
     @inner_kernel
     def highest(self):

@@ -74,7 +74,7 @@ class ModalLiquid(Block):
         return uu, up, pp
 
     @inner_kernel
-    def push(self, base, implicit, pitch):
+    def push(self, base, implicit, pitch, pull):
         """Force and moment of the modes on a tank without acceleration."""
         force = moment = 0.0
         amplitude, rate = self.amplitude[base], self.rate[base]
@@ -82,6 +82,7 @@ class ModalLiquid(Block):
             inertia = self.mu[n] + implicit * self.damping[n] + implicit * implicit * self.stiffness[n]
             arm = self.lambda_02[n] - implicit * implicit * self.pitch_weight[n]
             rest = self.damping[n] * rate[n] + self.stiffness[n] * amplitude[n] - self.pitch_weight[n] * pitch
+            rest -= self.lambda_1[n] * pull
             force += self.lambda_1[n] * rest / inertia
             moment += arm * rest / inertia + self.pitch_weight[n] * amplitude[n]
         return force, moment
@@ -141,6 +142,14 @@ class ModalLiquid(Block):
             potential += amplitude[n] * (0.5 * self.stiffness[n] * amplitude[n] - self.pitch_weight[n] * pitch)
             loss += self.damping[n] * rate[n] * rate[n]
         return kinetic, potential, loss
+
+    @inner_kernel
+    def momentum(self, ride, stage):
+        """That of the modes."""
+        momentum = 0.0
+        for n in range(self.mu.size):
+            momentum += self.lambda_1[n] * self.rate[stage, n]
+        return momentum
 
     @inner_kernel
     def rise(self, stage):

@@ -34,8 +34,12 @@ class ContactModel(Block):
     slip_reduction: float
 
     @inner_kernel
-    def approach(self, rail, heave):
-        """Approach (m) of a wheel at `heave` (m) and the `rail` (m) under it; negative when apart."""
+    def approach(self, wheel, rail, heave, place, angle):
+        """Approach (m) of a `wheel` at `heave` (m) to the `rail` (m) under it; negative when apart.
+
+        The wagon stands at the `place` (m) along the track, the wheel has turned by `angle` (rad): where rails and
+        wheels are even, neither matters.
+        """
         return rail - heave
 
     @kernel

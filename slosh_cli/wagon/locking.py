@@ -71,7 +71,9 @@ def wheel_holds(vehicle, wheel, time):
     later, _ = brake.torque(wheel, time + _RATE_OVER, 0.0)
     point, wagon, contact = vehicle.points[0], vehicle.wagon, vehicle.contact
     under, heave, speed = vehicle.rail.contact[wheel], wagon.first_wheel + wheel, point.v[0]
-    normal, slope = contact.normal_force(contact.approach(point.rail[under], point.q[heave]))
+    q = point.q
+    approach = contact.approach(wheel, point.rail[under], q[heave], q[0], q[wagon.first_spin + wheel])
+    normal, slope = contact.normal_force(approach)
     force, by_normal, by_slip, by_speed = contact.creep_force(normal, speed, speed)
     over = force * wagon.wheel_radius - torque
     if abs(over) > SWITCH_TOLERANCE * torque:
