@@ -41,7 +41,8 @@ class Scales(Block):
 class Point(Block):
     """A vehicle at one instant: coordinates and rail with two time derivatives, contact forces, powers.
 
-    `q`, `v`, `a` (coordinates,); `rail...` (2 n,); `normal`, `creep` (N), `torque` (N m) (wheels,); `power` (LOSSES,) W, in the order of the ledger's losses. `stage` is its place among the points of a step (`method.START`, ...).
+    `q`, `v`, `a` (coordinates,); `rail...` (2 n,); `normal` and `creep` in N, `torque` in N m (wheels,); `power` in W,
+    in the order of the ledger's losses. `stage` is its place among the points of a step (`method.START`, ...).
     """
 
     stage: int
@@ -106,10 +107,10 @@ class Scratch(Block):
 class Account(Block):
     """What a vehicle sums up over a run, beside what it was before the step in hand.
 
-    `energies` (3,): kinetic, elastic, gravity's and slosh, J; `losses` (LOSSES,) J; `least`, `largest` (wheels,) wheel
-    loads (N) and `locked_time` (wheels,) s since its onset, at `onset_time` s and `onset_position` m; `load_seconds` N s
-    of all wheels in `seconds` since then; `surface` the largest rise, m; `lifted` how often wheels lifted off or landed;
-    the rest counts what was computed.
+    `energies` (3,) J: kinetic, elastic, gravity's and slosh; `losses` J, in the order of the ledger's. Since its onset,
+    at `onset_time` s and `onset_position` m: `least`, `largest` wheel loads (N) and `locked_time` (s), each (wheels,);
+    `load_seconds` N s of all wheels in `seconds`. `surface` is the largest rise, m; `lifted` says how often wheels
+    lifted off or landed; the rest counts what was computed.
     """
 
     energies_before: Vector
