@@ -21,6 +21,7 @@ ORDER = [
     {"study"},
     {"validation"},
     {"report"},
+    {"application"},
     {"cli"},
 ]
 """What may import what stands to its left; members of one set do not import each other's packages."""
@@ -123,7 +124,13 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
     assert run.stdout.split() == []
 
 
-@pytest.mark.parametrize("name", ["load_scenario", "simulate", "Result", "__version__"])
+OFFERED = (
+    "Result", "Scenario", "__version__", "coefficients", "excite", "load_scenario", "plot", "simulate", "sweep",
+    "validate",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OFFERED)
 def test_the_package_offers_its_interface(name: str) -> None:
     import slosh_cli
 

@@ -12,11 +12,6 @@ from slosh_cli.errors import UsageError
 DEFAULT: Final = "tank-wagon"
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("init")(init)
-
-
 def init(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")

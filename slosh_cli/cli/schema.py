@@ -16,11 +16,6 @@ class FileKind(StrEnum):
     STUDY = "study"
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("schema")(schema)
-
-
 def schema(
     kind: Annotated[
         FileKind,

@@ -2,6 +2,7 @@
 
 import os
 import time
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -11,10 +12,10 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, Overrides
 from slosh_cli.errors import UsageError
 
-ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+_ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that keep linear algebra to the thread that calls it: the stops share the cores among them already."""
 
-ScenarioOrStudy = Annotated[
+_ScenarioOrStudy = Annotated[
     Path | None,
     typer.Argument(
         metavar="SCENARIO",
@@ -22,7 +23,7 @@ ScenarioOrStudy = Annotated[
         show_default=False,
     ),
 ]
-Speeds = Annotated[
+_Speeds = Annotated[
     str | None,
     typer.Option(
         "--v0",
@@ -32,7 +33,7 @@ Speeds = Annotated[
         show_default=False,
     ),
 ]
-Torques = Annotated[
+_Torques = Annotated[
     str | None,
     typer.Option(
         "--torque",
@@ -42,17 +43,17 @@ Torques = Annotated[
         show_default=False,
     ),
 ]
-Vary = Annotated[
+_Vary = Annotated[
     list[str] | None,
     typer.Option(
         "--vary",
         metavar="KEY=LIST",
-        help="Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
+        help="_Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
         "--vary contact.adhesion=dry,wet. May be repeated.",
         show_default=False,
     ),
 ]
-Liquids = Annotated[
+_Liquids = Annotated[
     str | None,
     typer.Option(
         "--liquid",
@@ -61,7 +62,7 @@ Liquids = Annotated[
         show_default=False,
     ),
 ]
-StudyFolder = Annotated[
+_StudyFolder = Annotated[
     Path | None,
     typer.Option(
         "--output",
@@ -71,11 +72,11 @@ StudyFolder = Annotated[
         show_default=False,
     ),
 ]
-Jobs = Annotated[
+_Jobs = Annotated[
     int | None,
     typer.Option("--jobs", metavar="N", min=1, help="Threads. Default: one per core.", show_default=False),
 ]
-ClusterAddress = Annotated[
+_ClusterAddress = Annotated[
     str | None,
     typer.Option(
         "--cluster",
@@ -84,29 +85,24 @@ ClusterAddress = Annotated[
         show_default=False,
     ),
 ]
-Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
-Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("sweep")(sweep)
+_Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
+_Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
+_DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
 
 
 def sweep(
-    scenario_file: ScenarioOrStudy = None,
-    speeds: Speeds = None,
-    torques: Torques = None,
-    vary: Vary = None,
-    liquids: Liquids = None,
+    scenario_file: _ScenarioOrStudy = None,
+    speeds: _Speeds = None,
+    torques: _Torques = None,
+    vary: _Vary = None,
+    liquids: _Liquids = None,
     overrides: Overrides = None,
-    output: StudyFolder = None,
-    jobs: Jobs = None,
-    cluster: ClusterAddress = None,
-    histories: Histories = False,
-    fresh: Fresh = False,
-    dry_run: DryRun = False,
+    output: _StudyFolder = None,
+    jobs: _Jobs = None,
+    cluster: _ClusterAddress = None,
+    histories: _Histories = False,
+    fresh: _Fresh = False,
+    dry_run: _DryRun = False,
     as_json: AsJson = False,
 ) -> ExitCode:
     """Run a grid of stops and compare liquid with solid (Figure 3).
@@ -115,14 +111,18 @@ def sweep(
     extended computes only what is new. Without -o another study of the same name gets a folder with a number.
     """
     began = time.perf_counter()
-    for variable in ONE_THREAD:
+    for variable in _ONE_THREAD:
         os.environ[variable] = "1"
-    from slosh_cli.cli.sweep_task import Task, default_folder_of, estimate, run
+    from slosh_cli.application.keeping import default_folder
+    from slosh_cli.application.studies import is_free_for_study
+    from slosh_cli.cli.keeping import folder_of_its_own
+    from slosh_cli.cli.sweep_task import Task, carry_out, estimate
     from slosh_cli.study.build import Wishes, build
 
     if jobs is not None and cluster is not None:
         raise UsageError("--jobs is for this machine; a cluster has its own threads: leave one of them out", "--jobs")
     study = build(Wishes(scenario_file, overrides or (), speeds, torques, vary or (), liquids, histories))
-    folder = output or default_folder_of(study, overrides or ())
+    default = default_folder(study.name, overrides)
+    folder = output or folder_of_its_own(default, partial(is_free_for_study, study))
     task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began)
-    return estimate(task) if dry_run else run(task)
+    return estimate(task) if dry_run else carry_out(task)

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.output import say, show
-from slosh_cli.cli.sweep_figures import name_of, text_of, unit_of
+from slosh_cli.report.study_pages import name_of, text_of, unit_of
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 from slosh_cli.study.table import TABLE
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from slosh_cli.study.claims import Verdict
 
-Row = Mapping[str, Any]
+_Row = Mapping[str, Any]
 
-MOST_LINES: Final = 60
+_MOST_LINES: Final = 60
 """Points of a table on the terminal; a larger study is read from its file."""
 _EXAMPLES: Final = 4
 """Stops named in a group of failures."""
@@ -41,9 +41,9 @@ def _span(axis: Axis) -> str:
     return f"{axis.values[0]} to {axis.values[-1]} ({len(axis.values)} values)"
 
 
-def show_study(study: Study, rows: Iterable[Row]) -> None:
+def show_study(study: Study, rows: Iterable[_Row]) -> None:
     """Print the table and the most effective torques, to stdout."""
-    rows = list(rows) if _lines(study) <= MOST_LINES else []
+    rows = list(rows) if _lines(study) <= _MOST_LINES else []
     if rows:
         show(_table(study, rows))
         say(_legend(rows))
@@ -62,9 +62,9 @@ def claim_text(verdicts: Mapping[str, Sequence["Verdict"]]) -> str:
     return "\n".join(lines)
 
 
-def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
+def failure_lines(study: Study, rows: Iterable[_Row]) -> list[str]:
     """What went wrong, grouped by cause: how often, why, where."""
-    groups: dict[tuple[str, str], list[Row]] = {}
+    groups: dict[tuple[str, str], list[_Row]] = {}
     for row in rows:
         if row["status"] != "stopped":
             cause = _NUMBER.sub("#", str(row.get("reason") or ""))
@@ -79,7 +79,7 @@ def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
     return lines
 
 
-def verdict_lines(rows: Iterable[Row]) -> list[str]:
+def verdict_lines(rows: Iterable[_Row]) -> list[str]:
     """How many stops each check warns of, most first; the warnings themselves are in the table."""
     counts: Counter[str] = Counter()
     stops = 0
@@ -90,7 +90,7 @@ def verdict_lines(rows: Iterable[Row]) -> list[str]:
     return [f"outside the limits of a check (see not_within and warnings in {TABLE}):", *found] if found else []
 
 
-def _where(study: Study, row: Row) -> str:
+def _where(study: Study, row: _Row) -> str:
     return ", ".join(text_of(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
 
 
@@ -105,7 +105,7 @@ def _told(study: Study) -> list[Axis]:
     return [axis for axis in study.axes if axis.key != LIQUID and (len(axis.values) > 1 or axis.key in (SPEED, TORQUE))]
 
 
-def _table(study: Study, rows: Sequence[Row]) -> "Table":
+def _table(study: Study, rows: Sequence[_Row]) -> "Table":
     from rich import box
     from rich.table import Table
 
@@ -130,7 +130,7 @@ def _table(study: Study, rows: Sequence[Row]) -> "Table":
     return table
 
 
-def _distance(row: Row | None, best: Sequence[Row]) -> str:
+def _distance(row: _Row | None, best: Sequence[_Row]) -> str:
     if row is None:
         return "-"
     distance = row.get("braking_distance_m")
@@ -141,12 +141,12 @@ def _distance(row: Row | None, best: Sequence[Row]) -> str:
     return f"{mark}{outside} {distance:.2f}".strip()
 
 
-def _ratio(row: Row | None) -> str:
+def _ratio(row: _Row | None) -> str:
     ratio = None if row is None else row.get("ratio_to_solid")
     return "-" if ratio is None else f"{ratio:.4f}"
 
 
-def _legend(rows: Sequence[Row]) -> str:
+def _legend(rows: Sequence[_Row]) -> str:
     words = "* shortest of its curve"
     outside = any(row.get("braking_distance_m") is not None and not row.get("liquid_in_range") for row in rows)
     return words + ("   o outside the range of the liquid's theory (see warnings in the table)" if outside else "")
@@ -161,9 +161,9 @@ def _curve_of(study: Study) -> list[Axis]:
     return [axis for axis in study.axes if axis is not along]
 
 
-def _best(rows: Sequence[Row], axes: Sequence[Axis]) -> list[Row]:
+def _best(rows: Sequence[_Row], axes: Sequence[Axis]) -> list[_Row]:
     """The shortest stop of every curve."""
-    curves: dict[tuple[str, ...], Row] = {}
+    curves: dict[tuple[str, ...], _Row] = {}
     for row in rows:
         if row.get("braking_distance_m") is None:
             continue
@@ -173,7 +173,7 @@ def _best(rows: Sequence[Row], axes: Sequence[Axis]) -> list[Row]:
     return list(curves.values())
 
 
-def _best_lines(study: Study, rows: Sequence[Row]) -> list[str]:
+def _best_lines(study: Study, rows: Sequence[_Row]) -> list[str]:
     torques = next((axis for axis in study.axes if axis.key == TORQUE), None)
     if torques is None or len(torques.values) < _FEWEST:
         return []

@@ -1,5 +1,6 @@
 """`slosh tank`: the tank alone; its slosh modes, its answer to a deceleration, its modes against the filling."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -13,14 +14,14 @@ _HELP: Final = """The tank alone: slosh modes, forces under a deceleration, char
 Takes the scenario of a stop or of a tank alone.
 """
 
-Modes = Annotated[
+_Modes = Annotated[
     int | None,
     typer.Option(
         "--modes", metavar="N", min=1, max=20, show_default=False,
         help="How many odd longitudinal modes (n = 1, 3, 5, ...). Default: as many as the scenario states.",
     ),
 ]  # fmt: skip
-OptionalFolder = Annotated[
+_OptionalFolder = Annotated[
     Path | None,
     typer.Option(
         "--output", "-o", metavar="DIR", show_default=False,
@@ -29,20 +30,15 @@ OptionalFolder = Annotated[
 ]  # fmt: skip
 
 
-def register(app: typer.Typer) -> None:
-    """Add the commands to the tree."""
-    tank = typer.Typer(help=_HELP, rich_markup_mode=None, no_args_is_help=True)
-    tank.command("coefficients")(coefficients)
-    tank.command("excite")(excite)
-    tank.command("chart")(chart)
-    app.add_typer(tank, name="tank")
+tank = typer.Typer(help=_HELP, rich_markup_mode=None, no_args_is_help=True)
 
 
-def coefficients(
+@tank.command("coefficients")
+def _coefficients(
     scenario_file: ScenarioFile,
-    modes: Modes = None,
+    modes: _Modes = None,
     overrides: Overrides = None,
-    output: OptionalFolder = None,
+    output: _OptionalFolder = None,
     as_json: AsJson = False,
 ) -> ExitCode:
     """Slosh modes from the tank's geometry, beside the scenario's own."""
@@ -51,7 +47,8 @@ def coefficients(
     return show_coefficients(scenario_file, modes, overrides, output, as_json=as_json)
 
 
-def excite(
+@tank.command("excite")
+def _excite(
     scenario_file: ScenarioFile,
     deceleration: Annotated[
         str | None,
@@ -83,18 +80,20 @@ def excite(
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
-    from slosh_cli.cli.tank_excite import Wishes, run_excitation
+    from slosh_cli.application.excitation import prescribed
+    from slosh_cli.cli.tank_excite import run_excitation
 
-    wishes = Wishes(deceleration, ramp, duration, table, interval)
-    return run_excitation(scenario_file, wishes, overrides, output, as_json=as_json)
+    read = partial(prescribed, deceleration, ramp, duration, table, interval, "--{}".format)
+    return run_excitation(scenario_file, read, overrides, output, as_json=as_json)
 
 
-def chart(
+@tank.command("chart")
+def _chart(
     scenario_file: ScenarioFile,
     fills: Annotated[
         str, typer.Option("--fills", metavar="LIST", help="Fillings (depth over height): a list or a range.")
     ] = "0.05:0.95:0.05",
-    modes: Modes = None,
+    modes: _Modes = None,
     overrides: Overrides = None,
     output: OutputFolder = None,
     as_json: AsJson = False,

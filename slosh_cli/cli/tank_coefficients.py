@@ -1,58 +1,27 @@
-"""What `slosh tank coefficients` computes, prints and writes."""
+"""What `slosh tank coefficients` prints."""
 
-import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import partial
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
 
+from slosh_cli.application.keeping import Keeping
+from slosh_cli.application.tank import (
+    COEFFICIENTS_TABLE,
+    MODE_QUANTITIES,
+    TankCoefficients,
+    coefficients,
+    keep_coefficients,
+)
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.keeping import Keeping, by_kind, files_text
+from slosh_cli.cli.keeping import files_text, told
 from slosh_cli.cli.output import say, say_json, show, warn
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.results.files import try_targets
-from slosh_cli.results.validity import plain, warnings_of
-from slosh_cli.tank.coefficients import SloshMode, tank_modes
-from slosh_cli.tank.comparison import ModeComparison, compare_modes
-from slosh_cli.tank.errors import TankError
-from slosh_cli.tank.inertia import stokes_joukowski_inertia
-from slosh_cli.tank.load import FrozenLoad, frozen_load
-from slosh_cli.tank.longitudinal import LongitudinalMode, LongitudinalModes
+from slosh_cli.tank.coefficients import SloshMode
+from slosh_cli.tank.comparison import ModeComparison
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-    from slosh_cli.results.recommendation import Recommendation
-    from slosh_cli.results.validity import Check
-    from slosh_cli.scenario import Scenario, TankScenario
-
-TABLE: Final = "coefficients.csv"
-_PICTURE: Final = re.compile(r"mode_\d+\.(png|svg)")
-COLUMNS: Final = {
-    "omega_rad_s": "frequency",
-    "lambda_1_kg": "lambda_1",
-    "lambda_02_kg_m": "lambda_02",
-    "mu_kg": "mu",
-    "mass_fraction": "mass_fraction",
-    "height_m": "height",
-}
-"""Key of JSON and CSV -> name of the quantity in `ModeComparison.deviations`."""
-
-
-@dataclass(frozen=True)
-class Findings:
-    """All that is said about a tank. `lidded_inertia` kg m^2 is None where it could not be computed."""
-
-    name: str
-    load: FrozenLoad
-    rows: Sequence[ModeComparison]
-    solved: LongitudinalModes
-    lidded_inertia: float | None
-    checks: "Sequence[Check]"
-    recommendation: "Recommendation"
-    warnings: Sequence[str]
 
 
 def show_coefficients(
@@ -61,91 +30,33 @@ def show_coefficients(
     """Compute, write where a folder is given, and tell."""
     scenario = read_any_scenario(scenario_file, overrides)
     if output is not None:
-        try_targets(output, (TABLE,))
-    found, keeping = find(scenario, modes), Keeping()
+        try_targets(output, (COEFFICIENTS_TABLE,))
+    found, keeping = coefficients(scenario, modes), Keeping()
     if not as_json:
         _show(found)
-    files = _write(scenario, found, output, keeping) if output is not None else {}
+    files = keep_coefficients(found, output, keeping) if output is not None else {}
     if as_json:
-        answer = as_dict(found)
+        answer = found.summary()
         say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
         for warning in found.warnings:
             warn(warning)
     elif files:
         say(files_text(files))
-    return keeping.told()
+    return told(keeping)
 
 
-def find(scenario: "Scenario | TankScenario", modes: int | None) -> Findings:
-    """Computed and given modes of the scenario's tank, and its load."""
-    import_module("skfem.helpers")  # with the solvers of scipy: loaded before the clock of the finite elements starts
-    import_module("scipy.spatial")
-    import_module("scipy.sparse.linalg")
-    from slosh_cli.results.liquid_range import coefficient_checks, expected_checks, tank_checks
-    from slosh_cli.results.recommendation import deceleration_of, recommend
-
-    tank = scenario.tank
-    rows = compare_modes(tank, modes)
-    deceleration = deceleration_of(scenario)
-    advice = recommend(tank, deceleration)
-    verdicts = coefficient_checks(tank)
-    verdicts += tuple(check for check in tank_checks(tank, advice.sentence) if check not in verdicts)
-    if deceleration is not None:
-        verdicts += expected_checks(tank, deceleration, advice.sentence)
-    warnings = warnings_of(verdicts)
-    lidded = None
-    try:
-        lidded = stokes_joukowski_inertia(tank)
-    except TankError as error:
-        warnings.append(f"no pitch inertia of an ideal liquid under a lid: {error.message}")
-    solved = tank_modes(tank, len(rows))  # kept from the comparison
-    return Findings(scenario.name, frozen_load(tank), rows, solved, lidded, verdicts, advice, warnings)
-
-
-def as_dict(found: Findings) -> dict[str, Any]:
-    """The findings as the JSON object has them."""
-    return {
-        "name": found.name,
-        "liquid_mass_kg": found.load.mass,
-        "centroid_m": found.load.centre_height,
-        "pitch_inertia_frozen_kg_m2": found.load.pitch_inertia,
-        "pitch_inertia_stokes_joukowski_kg_m2": found.lidded_inertia,
-        "modes": [_values(row.n, row.computed, row.computed_fraction) for row in found.rows],
-        "given": [_values(row.n, row.given, row.given_fraction) for row in found.rows if row.given is not None],
-        "deviations_percent": [
-            {"n": row.n, **{key: 100.0 * row.deviations()[name] for key, name in COLUMNS.items()}}
-            for row in found.rows
-            if row.given is not None
-        ],
-        "accuracy": {
-            "frequency_change": found.solved.relative_change,
-            "height_change": found.solved.height_change,
-            "unknowns": found.solved.unknowns,
-        },
-        "solve_seconds": found.solved.solve_seconds,
-        "checks": plain(found.checks),
-        "recommendation": found.recommendation.as_dict(),
-        "warnings": list(found.warnings),
-    }
-
-
-def _values(n: int, mode: SloshMode, fraction: float | None) -> dict[str, Any]:
-    values = {key: getattr(mode, name) for key, name in COLUMNS.items() if name != "mass_fraction"}
-    return {"n": n, **{key: values.get(key, fraction) for key in COLUMNS}}
-
-
-def _show(found: Findings) -> None:
+def _show(found: TankCoefficients) -> None:
     from rich.text import Text
 
     alarms = [Text(f"warning: {warning}", style="bold yellow") for warning in found.warnings]
     show(_facts(found), "", _modes(found), "", *alarms, Text(found.recommendation.sentence))
 
 
-def _facts(found: Findings) -> "Table":
+def _facts(found: TankCoefficients) -> "Table":
     from rich.table import Table
 
     table = Table.grid(padding=(0, 2))
-    table.title, table.title_justify, table.title_style = f"{found.name}: the tank alone", "left", "bold"
+    table.title, table.title_justify, table.title_style = f"{found.scenario.name}: the tank alone", "left", "bold"
     lidded = "-" if found.lidded_inertia is None else f"{found.lidded_inertia:.6g} kg m^2"
     for row in (
         ("liquid mass", f"{found.load.mass:.6g} kg"),
@@ -159,7 +70,7 @@ def _facts(found: Findings) -> "Table":
     return table
 
 
-def _modes(found: Findings) -> "Table":
+def _modes(found: TankCoefficients) -> "Table":
     from rich import box
     from rich.table import Table
 
@@ -169,7 +80,7 @@ def _modes(found: Findings) -> "Table":
     heads = ("omega\nrad/s", "lambda_1\nkg", "lambda_02\nkg m", "mu\nkg", "mass\nfraction", "height\nm")
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
-    for row in found.rows:
+    for row in found.modes:
         for cells in _lines(row):
             table.add_row(*cells)
     return table
@@ -180,7 +91,7 @@ def _lines(row: ModeComparison) -> Iterator[list[str]]:
     yield [str(row.n), "computed", *_numbers(row.computed, row.computed_fraction)]
     if row.given is not None and row.given_fraction is not None:
         yield ["", "given", *_numbers(row.given, row.given_fraction)]
-        yield ["", "given, %", *(f"{100.0 * row.deviations()[name]:+.2f}" for name in COLUMNS.values())]
+        yield ["", "given, %", *(f"{100.0 * row.deviations()[name]:+.2f}" for name in MODE_QUANTITIES.values())]
 
 
 def _numbers(mode: SloshMode, fraction: float) -> list[str]:
@@ -192,24 +103,3 @@ def _numbers(mode: SloshMode, fraction: float) -> list[str]:
         f"{fraction:.5f}",
         f"{mode.height:.4f}",
     ]
-
-
-def _write(scenario: "Scenario | TankScenario", found: Findings, folder: Path, keeping: Keeping) -> dict[str, Any]:
-    """Table of all modes, then a picture of each."""
-    from slosh_cli.results.tables import write_table
-
-    def draw(mode: LongitudinalMode, folder: Path) -> None:
-        from slosh_cli.report.tank_figures import Heading, draw_mode
-
-        tank = scenario.tank
-        words = f"{found.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
-        draw_mode(mode, tank, Heading(f"Slosh mode n = {mode.n}", f"{words}{mode.frequency:.4g} rad/s"), folder)
-
-    answer = as_dict(found)
-    rows = [{"source": "computed", **row} for row in answer["modes"]]
-    rows += [{"source": "given", **row} for row in answer["given"]]
-    drawn = {f"mode_{mode.n}": partial(draw, mode) for mode in found.solved.modes}
-    names = [TABLE, *(f"{name}.{suffix}" for name in drawn for suffix in ("png", "svg"))]
-    earlier = [file.name for file in folder.glob("mode_*.*") if _PICTURE.fullmatch(file.name)]
-    owned = [*names, *(name for name in earlier if name not in names)]
-    return by_kind(keeping.keep(folder, owned, {TABLE: lambda path: write_table(rows, path)}, drawn), table=TABLE)

@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from slosh_cli.validation.chart import Chart
 from slosh_cli.validation.data_file import CaseData, Kind
@@ -62,6 +63,12 @@ class CaseResult:
     def passed(self) -> bool:
         """Whether every row keeps within its tolerance, and there is one that could fail."""
         return all(row.passed for row in self.rows) and any(row.tolerance is not None for row in self.rows)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The result as the JSON object of `slosh validate` has it."""
+        keys = ("quantity", "value", "reference", "deviation", "tolerance", "source")
+        rows = [{key: getattr(row, key) for key in keys} for row in self.rows]
+        return {"name": self.name, "passed": self.passed, "seconds": self.seconds, "rows": rows}
 
 
 @dataclass

@@ -18,7 +18,7 @@ from study_tools import QuickSolver
 
 import slosh_cli.results.simulate
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.sweep_progress import StopsProgress, duration
+from slosh_cli.cli.progress import StopsProgress, duration
 from slosh_cli.report.study_figures import draw_study
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.validity import Check, warnings_of

@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from slosh_cli.cli.sweep_figures import pages
 from slosh_cli.report import figures
 from slosh_cli.report.study_figures import OUTSIDE, Mark, Page, Panel, braking_distance, draw_study
+from slosh_cli.report.study_pages import pages
 from slosh_cli.results.result import Status
 from slosh_cli.study.build import Wishes, build
 

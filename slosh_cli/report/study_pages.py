@@ -12,16 +12,16 @@ from slosh_cli.study.table import column_of
 if TYPE_CHECKING:
     from slosh_cli.report.study_figures import Mark, Page
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
-NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
+_NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
 _UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
 _COLUMNS: Final[Mapping[str, str]] = {SPEED: "v0_km_h", TORQUE: "torque_kN_m", LIQUID: "liquid"}
 
 
 def name_of(axis: Axis) -> str:
     """What people call an axis."""
-    return NAMES.get(axis.key, axis.key)
+    return _NAMES.get(axis.key, axis.key)
 
 
 def unit_of(axis: Axis) -> str:
@@ -29,14 +29,14 @@ def unit_of(axis: Axis) -> str:
     return _UNITS.get(axis.key, axis.unit)
 
 
-def column(axis: Axis) -> str:
+def _column(axis: Axis) -> str:
     """The column of the table that holds an axis's value."""
     return _COLUMNS.get(axis.key) or column_of(axis)
 
 
 def text_of(axis: Axis, row: Mapping[str, Any]) -> str:
     """The value of an axis in a row, with its unit."""
-    value = row[column(axis)]
+    value = row[_column(axis)]
     return f"{value:g} {unit_of(axis)}".rstrip() if isinstance(value, float) else str(value)
 
 
@@ -70,7 +70,7 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
     ]
 
 
-def _shared_out(panels: Sequence[T], most: int) -> Iterator[Sequence[T]]:
+def _shared_out(panels: Sequence[_T], most: int) -> Iterator[Sequence[_T]]:
     """`panels` on as few pages of at most `most` as there must be, about as many on each."""
     count = math.ceil(len(panels) / most)
     for number in range(count):
@@ -103,6 +103,6 @@ def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> "Mark":
     from slosh_cli.report.study_figures import Mark
     from slosh_cli.results.result import Status
 
-    value = row[column(along)]
+    value = row[_column(along)]
     x = value if isinstance(value, float) else float(ticks.setdefault(value, len(ticks)))
     return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("liquid_in_range")))

@@ -1,0 +1,304 @@
+"""The tank alone under a prescribed deceleration: what is prescribed, what the liquid does, the files."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from slosh_cli.application.keeping import Keeping, by_kind
+from slosh_cli.application.plotting import writers
+from slosh_cli.errors import UsageError, ValueRefused
+from slosh_cli.report.record import FORMATS
+from slosh_cli.results.validity import Check, plain, warnings_of
+from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario, parse_quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from slosh_cli.application.plotting import Figures
+    from slosh_cli.results.channels import Channel
+    from slosh_cli.results.recommendation import Recommendation
+    from slosh_cli.results.result import Vector
+    from slosh_cli.scenario.csv_table import Table
+    from slosh_cli.solver.excite import Deceleration, Excitation
+
+_TABLE: Final = "excite.csv"
+_HISTORY: Final = "excite.h5"
+EXCITATION_FILES: Final = (_TABLE, _HISTORY, *(f"excite.{suffix}" for suffix in FORMATS))
+_COLUMNS: Final = ("time_s", "deceleration_m_s2")
+_MOST_ROWS: Final = 1_000_000
+_LARGEST: Final = 1000.0
+"""Decelerations beyond this, m/s^2, are a slip in the unit."""
+
+Amount = str | float
+"""A quantity with its unit (``"0.2 g"``), or an SI number."""
+
+
+@dataclass(frozen=True)
+class Prescription:
+    """A deceleration over `duration` s, told every `interval` s; `settings` tell it apart from others."""
+
+    deceleration: Deceleration
+    duration: float
+    interval: float
+    settings: str
+
+
+@dataclass(frozen=True, eq=False)
+class ExcitationResult:
+    """What the liquid of a scenario's tank did to it; `histories` hold forces, moments and levels over time.
+
+    checks, recommendation: whether the liquid's model held, and which one suits; None for a load that is frozen on
+    purpose. settings: what was prescribed, as text.
+    """
+
+    scenario: Scenario | TankScenario = field(repr=False)
+    histories: Excitation = field(repr=False)
+    checks: tuple[Check, ...] = field(repr=False)
+    recommendation: Recommendation | None = field(repr=False)
+    settings: str
+
+    @property
+    def reason(self) -> str:
+        """Why the history ends early; empty when it does not."""
+        return self.histories.reason
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know before believing it."""
+        return warnings_of(self.checks)
+
+    @property
+    def room(self) -> float:
+        """Height of the roof over the still surface, m."""
+        return self.scenario.tank.height * (1.0 - self.scenario.tank.fill)
+
+    @property
+    def conditions(self) -> str:
+        """Tank, liquid and largest deceleration in one line."""
+        from slosh_cli.solver.excite import extreme
+
+        tank = self.scenario.tank
+        return (
+            f"{self.scenario.name}: {tank.shape}, {tank.length:g} m long, {100.0 * tank.fill:g} % full, "
+            f"liquid: {tank.liquid.model}, up to {extreme(self.histories.deceleration):.4g} m/s²"
+        )
+
+    def summary(self) -> dict[str, Any]:
+        """The answer in plain Python values, with the keys of `slosh tank excite --json` but for `files`.
+
+        `max_...` is the extreme of the magnitude, in either direction.
+        """
+        from slosh_cli.solver.excite import extreme
+
+        found = self.histories
+        return {
+            "name": self.scenario.name,
+            "liquid_model": self.scenario.tank.liquid.model,
+            "max_normalised_force": extreme(found.normalised_force),
+            "min_normalised_force": float(found.normalised_force.min()),
+            "max_surface_m": found.max_surface,
+            "surface_limit_m": self.room,
+            "max_moment_N_m": extreme(found.moment),
+            "liquid_mass_kg": found.mass,
+            "mass_error": found.mass_error,
+            "accuracy": found.accuracy,
+            "reason": found.reason,
+            "checks": plain(self.checks),
+            "recommendation": self.recommendation.as_dict() if self.recommendation else None,
+            "warnings": self.warnings,
+        }
+
+    def to_frame(self) -> pd.DataFrame:
+        """The histories as a DataFrame: index `time_s`, the unit in the column names."""
+        import pandas as pd
+
+        columns = {name: values for name, (_, values) in _columns(self.histories).items()}
+        return pd.DataFrame(columns, index=pd.Index(self.histories.time, name=_COLUMNS[0]))
+
+    def figures(self) -> Figures:
+        """What draws deceleration, force, moment and levels over time."""
+
+        def draw() -> Figure:
+            from slosh_cli.report.tank_figures import Heading, excitation_figure
+
+            heading = Heading("Tank under deceleration", self.conditions, self.warnings)
+            return excitation_figure(self.histories, heading, self.room)
+
+        return {"excite": draw} if self.histories.time.size > 1 else {}
+
+
+def excite(
+    scenario: Scenario | TankScenario | str | Path,
+    deceleration: Amount | None = None,
+    ramp: Amount | None = None,
+    duration: Amount = "40 s",
+    *,
+    table: str | Path | None = None,
+    interval: Amount = "10 ms",
+) -> ExcitationResult:
+    """Decelerate the tank of a scenario, of a stop or of a tank alone, or of its file, without pitching it.
+
+    The deceleration is reached linearly within `ramp` (at once without one), then held; or it follows `table`, a CSV
+    file with the columns time_s and deceleration_m_s2. A liquid that its model cannot follow to the end is a result
+    too: see its reason. Raises ScenarioError and UsageError for what cannot be used, TankError where slosh
+    coefficients cannot be computed.
+    """
+    found = load_any_scenario(scenario) if isinstance(scenario, str | Path) else scenario
+    file = None if table is None else Path(table)
+    return excited(found, prescribed(deceleration, ramp, duration, file, interval))
+
+
+def excited(scenario: Scenario | TankScenario, prescription: Prescription) -> ExcitationResult:
+    """The same with a prescription that has been read."""
+    from slosh_cli.solver.excite import excite as integrated
+
+    found = integrated(scenario.tank, prescription.deceleration, prescription.duration, prescription.interval)
+    checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
+    return ExcitationResult(scenario, found, checks, advice, prescription.settings)
+
+
+def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tuple[Check, ...], Recommendation | None]:
+    """Whether the liquid stayed in the range of its model, and which model suits tank and deceleration."""
+    from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
+    from slosh_cli.results.recommendation import recommend
+    from slosh_cli.tank.roof import NEARLY_FULL
+
+    tank = scenario.tank
+    if tank.liquid.model == "rigid":
+        return (), None
+    advice = recommend(tank, found.largest_deceleration)
+    motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=scenario.tank.fill < NEARLY_FULL)
+    return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
+
+
+def prescribed(
+    deceleration: Amount | None,
+    ramp: Amount | None,
+    duration: Amount,
+    table: Path | None,
+    interval: Amount,
+    spelt: Callable[[str], str] = str,
+) -> Prescription:
+    """The prescription that is asked for; `spelt` says what messages call an argument.
+
+    Raises UsageError where it makes no sense, ScenarioError for a table that cannot be used.
+    """
+    seconds = _positive(duration, spelt("duration")), _positive(interval, spelt("interval"))
+    if seconds[0] / seconds[1] > _MOST_ROWS:
+        rule = f"a history has at most {_MOST_ROWS} rows; lengthen {spelt('interval')} or shorten {spelt('duration')}"
+        raise UsageError(rule, spelt("interval"))
+    found, where = _course(deceleration, ramp, table, spelt)
+    if found.largest(seconds[0]) == 0.0:
+        rule = f"the tank must be decelerated at some time within {spelt('duration')}"
+        raise UsageError(f"{where}: {rule}", where)
+    if found.largest(seconds[0]) > _LARGEST:
+        raise UsageError(f"{where}: must stay below {_LARGEST:g} m/s^2, or the unit is another one", where)
+    content = None if table is None else hashlib.sha256(table.read_bytes()).hexdigest()
+    return Prescription(found, *seconds, json.dumps([deceleration, ramp, duration, interval, content]))
+
+
+def _course(
+    deceleration: Amount | None, ramp: Amount | None, table: Path | None, spelt: Callable[[str], str]
+) -> tuple[Deceleration, str]:
+    """The deceleration over time, and what messages call it."""
+    from slosh_cli.solver.excite import Deceleration
+
+    level, ramped = spelt("deceleration"), spelt("ramp")
+    if (deceleration is None) == (table is None):
+        raise UsageError(f"say how the tank is decelerated: {level} '0.2 g', or {spelt('table')} FILE.csv", "excite")
+    if table is not None:
+        if ramp is not None:
+            raise UsageError(f"{ramped} goes with {level}; a table has its own course", ramped)
+        return Deceleration.table(_rows_of(table)), str(table)
+    reached = _si(deceleration or 0.0, "acceleration", level)
+    within = 0.0 if ramp is None else _si(ramp, "time", ramped)
+    if within < 0.0:
+        raise UsageError(f"{ramped} must not be negative; given `{ramp}`", ramped)
+    return Deceleration.ramped(reached, within), level
+
+
+def _rows_of(file: Path) -> list[tuple[float, float]]:
+    """Rows (s, m/s^2) of a CSV file with the columns of _COLUMNS; raises ScenarioError with file and line."""
+    from slosh_cli.scenario.csv_table import read_table
+
+    table = read_table(file, _COLUMNS, _times_do_not_fall)
+    return list(zip(*(table.columns[column] for column in _COLUMNS), strict=True))
+
+
+def _times_do_not_fall(table: Table) -> None:
+    times = table.columns[_COLUMNS[0]]
+    for line, before, time in zip(table.lines[1:], times, times[1:], strict=False):
+        if time < before:
+            given = f"{time:g} s after {before:g} s"
+            table.refuse(line, _COLUMNS[0], "must not fall from row to row", given, "sort the rows by time")
+
+
+def _si(amount: Amount, dimension: str, name: str) -> float:
+    if not isinstance(amount, str):
+        return float(amount)
+    try:
+        return parse_quantity(amount, dimension)
+    except ValueRefused as refused:
+        raise UsageError(f"{name} {refused}", name) from refused
+
+
+def _positive(amount: Amount, name: str) -> float:
+    value = _si(amount, "time", name)
+    if not value > 0.0:
+        raise UsageError(f"{name} must be positive; given `{amount}`", name)
+    return value
+
+
+def is_free_for_excitation(scenario: Scenario | TankScenario, settings: str, folder: Path) -> bool:
+    """Whether `folder` holds no excitation, or one of the same scenario and prescription."""
+    from slosh_cli.results.hdf5 import is_of
+
+    return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario, settings)
+
+
+def _columns(found: Excitation) -> dict[str, tuple[Channel, Vector]]:
+    """Column of the table -> channel of the history and its values."""
+    from slosh_cli.results.channels import CHANNELS
+
+    return {
+        "force_N": (CHANNELS["liquid_force"], found.force),
+        "moment_N_m": (CHANNELS["liquid_moment"], found.moment),
+        "surface_front_m": (CHANNELS["surface_front"], found.surface_front),
+        "surface_rear_m": (CHANNELS["surface_rear"], found.surface_rear),
+    }
+
+
+def keep_excitation(result: ExcitationResult, folder: Path, keeping: Keeping) -> dict[str, Any]:
+    """Write table and history into `folder`, then the figure; returns where those lie that could be written."""
+    from slosh_cli.results.channels import Channel
+    from slosh_cli.results.hdf5 import write_excitation
+    from slosh_cli.results.tables import write_table
+
+    found, columns = result.histories, _columns(result.histories)
+    values = zip(found.time, *(column for _, column in columns.values()), strict=True)
+    rows = [dict(zip((_COLUMNS[0], *columns), map(float, row), strict=True)) for row in values]
+    channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
+    channels |= dict(columns.values())
+    numbers: Mapping[str, Callable[[Path], object]] = {
+        _TABLE: lambda path: write_table(rows, path),
+        _HISTORY: lambda path: write_excitation(result.scenario, found.time, channels, _facts(result), path),
+    }
+    files = keeping.keep(folder, EXCITATION_FILES, numbers, writers(result.figures()))
+    return by_kind(files, table=_TABLE, history=_HISTORY)
+
+
+def _facts(result: ExcitationResult) -> dict[str, Any]:
+    """The attributes of the history file."""
+    facts = result.summary()
+    return facts | {
+        "settings": result.settings,
+        "warnings": "\n".join(facts["warnings"]),
+        "checks": json.dumps(facts["checks"]),
+        "recommendation": (facts["recommendation"] or {}).get("sentence", ""),
+    }
