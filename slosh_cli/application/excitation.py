@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping, by_kind
+from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.application.plotting import writers
 from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.report.record import FORMATS
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 
 _TABLE: Final = "excite.csv"
 _HISTORY: Final = "excite.h5"
-EXCITATION_FILES: Final = (_TABLE, _HISTORY, *(f"excite.{suffix}" for suffix in FORMATS))
+_FILES: Final = (_TABLE, _HISTORY, *(f"excite.{suffix}" for suffix in FORMATS))
 _COLUMNS: Final = ("time_s", "deceleration_m_s2")
 _MOST_ROWS: Final = 1_000_000
 _LARGEST: Final = 1000.0
 """Decelerations beyond this, m/s^2, are a slip in the unit."""
 
-Amount = str | float
+_Amount = str | float
 """A quantity with its unit (``"0.2 g"``), or an SI number."""
 
 
@@ -47,6 +47,41 @@ class Prescription:
     duration: float
     interval: float
     settings: str
+
+    @classmethod
+    def read(
+        cls,
+        deceleration: _Amount | None,
+        ramp: _Amount | None,
+        duration: _Amount,
+        table: Path | None,
+        interval: _Amount,
+        spelt: Callable[[str], str] = str,
+    ) -> Prescription:
+        """The prescription that is asked for; `spelt` says what messages call an argument.
+
+        Raises UsageError where it makes no sense, ScenarioError for a table that cannot be used.
+        """
+        span, step = _positive(duration, spelt("duration")), _positive(interval, spelt("interval"))
+        if span / step > _MOST_ROWS:
+            remedy = f"lengthen {spelt('interval')} or shorten {spelt('duration')}"
+            raise UsageError(f"a history has at most {_MOST_ROWS} rows; {remedy}", spelt("interval"))
+        found, where = _course(deceleration, ramp, table, spelt)
+        if found.largest(span) == 0.0:
+            rule = f"the tank must be decelerated at some time within {spelt('duration')}"
+            raise UsageError(f"{where}: {rule}", where)
+        if found.largest(span) > _LARGEST:
+            raise UsageError(f"{where}: must stay below {_LARGEST:g} m/s^2, or the unit is another one", where)
+        content = None if table is None else hashlib.sha256(table.read_bytes()).hexdigest()
+        return cls(found, span, step, json.dumps([deceleration, ramp, duration, interval, content]))
+
+    def carry_out(self, scenario: Scenario | TankScenario) -> ExcitationResult:
+        """What the liquid does. Raises TankError where slosh coefficients cannot be computed."""
+        from slosh_cli.solver.excite import excite as integrated
+
+        found = integrated(scenario.tank, self.deceleration, self.duration, self.interval)
+        checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
+        return ExcitationResult(scenario, found, checks, advice, self.settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,15 +167,43 @@ class ExcitationResult:
 
         return {"excite": draw} if self.histories.time.size > 1 else {}
 
+    def keep(self, folder: Path, keeping: Keeping) -> dict[str, Any]:
+        """Write table and history into `folder`, then the figure; returns where those lie that could be written."""
+        from slosh_cli.results.channels import Channel
+        from slosh_cli.results.hdf5 import write_excitation
+        from slosh_cli.results.tables import write_table
+
+        found, columns = self.histories, _columns(self.histories)
+        values = zip(found.time, *(column for _, column in columns.values()), strict=True)
+        rows = [dict(zip((_COLUMNS[0], *columns), map(float, row), strict=True)) for row in values]
+        channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
+        channels |= dict(columns.values())
+        numbers: Mapping[str, Callable[[Path], object]] = {
+            _TABLE: lambda path: write_table(rows, path),
+            _HISTORY: lambda path: write_excitation(self.scenario, found.time, channels, self._facts(), path),
+        }
+        files = keeping.keep(folder, _FILES, numbers, writers(self.figures()))
+        return by_kind(files, table=_TABLE, history=_HISTORY)
+
+    def _facts(self) -> dict[str, Any]:
+        """The attributes of the history file."""
+        facts = self.summary()
+        return facts | {
+            "settings": self.settings,
+            "warnings": "\n".join(facts["warnings"]),
+            "checks": json.dumps(facts["checks"]),
+            "recommendation": (facts["recommendation"] or {}).get("sentence", ""),
+        }
+
 
 def excite(
     scenario: Scenario | TankScenario | str | Path,
-    deceleration: Amount | None = None,
-    ramp: Amount | None = None,
-    duration: Amount = "40 s",
+    deceleration: _Amount | None = None,
+    ramp: _Amount | None = None,
+    duration: _Amount = "40 s",
     *,
     table: str | Path | None = None,
-    interval: Amount = "10 ms",
+    interval: _Amount = "10 ms",
 ) -> ExcitationResult:
     """Decelerate the tank of a scenario, of a stop or of a tank alone, or of its file, without pitching it.
 
@@ -151,16 +214,7 @@ def excite(
     """
     found = load_any_scenario(scenario) if isinstance(scenario, str | Path) else scenario
     file = None if table is None else Path(table)
-    return excited(found, prescribed(deceleration, ramp, duration, file, interval))
-
-
-def excited(scenario: Scenario | TankScenario, prescription: Prescription) -> ExcitationResult:
-    """The same with a prescription that has been read."""
-    from slosh_cli.solver.excite import excite as integrated
-
-    found = integrated(scenario.tank, prescription.deceleration, prescription.duration, prescription.interval)
-    checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
-    return ExcitationResult(scenario, found, checks, advice, prescription.settings)
+    return Prescription.read(deceleration, ramp, duration, file, interval).carry_out(found)
 
 
 def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tuple[Check, ...], Recommendation | None]:
@@ -177,34 +231,8 @@ def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tup
     return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
 
 
-def prescribed(
-    deceleration: Amount | None,
-    ramp: Amount | None,
-    duration: Amount,
-    table: Path | None,
-    interval: Amount,
-    spelt: Callable[[str], str] = str,
-) -> Prescription:
-    """The prescription that is asked for; `spelt` says what messages call an argument.
-
-    Raises UsageError where it makes no sense, ScenarioError for a table that cannot be used.
-    """
-    seconds = _positive(duration, spelt("duration")), _positive(interval, spelt("interval"))
-    if seconds[0] / seconds[1] > _MOST_ROWS:
-        rule = f"a history has at most {_MOST_ROWS} rows; lengthen {spelt('interval')} or shorten {spelt('duration')}"
-        raise UsageError(rule, spelt("interval"))
-    found, where = _course(deceleration, ramp, table, spelt)
-    if found.largest(seconds[0]) == 0.0:
-        rule = f"the tank must be decelerated at some time within {spelt('duration')}"
-        raise UsageError(f"{where}: {rule}", where)
-    if found.largest(seconds[0]) > _LARGEST:
-        raise UsageError(f"{where}: must stay below {_LARGEST:g} m/s^2, or the unit is another one", where)
-    content = None if table is None else hashlib.sha256(table.read_bytes()).hexdigest()
-    return Prescription(found, *seconds, json.dumps([deceleration, ramp, duration, interval, content]))
-
-
 def _course(
-    deceleration: Amount | None, ramp: Amount | None, table: Path | None, spelt: Callable[[str], str]
+    deceleration: _Amount | None, ramp: _Amount | None, table: Path | None, spelt: Callable[[str], str]
 ) -> tuple[Deceleration, str]:
     """The deceleration over time, and what messages call it."""
     from slosh_cli.solver.excite import Deceleration
@@ -239,7 +267,7 @@ def _times_do_not_fall(table: Table) -> None:
             table.refuse(line, _COLUMNS[0], "must not fall from row to row", given, "sort the rows by time")
 
 
-def _si(amount: Amount, dimension: str, name: str) -> float:
+def _si(amount: _Amount, dimension: str, name: str) -> float:
     if not isinstance(amount, str):
         return float(amount)
     try:
@@ -248,18 +276,30 @@ def _si(amount: Amount, dimension: str, name: str) -> float:
         raise UsageError(f"{name} {refused}", name) from refused
 
 
-def _positive(amount: Amount, name: str) -> float:
+def _positive(amount: _Amount, name: str) -> float:
     value = _si(amount, "time", name)
     if not value > 0.0:
         raise UsageError(f"{name} must be positive; given `{amount}`", name)
     return value
 
 
-def is_free_for_excitation(scenario: Scenario | TankScenario, settings: str, folder: Path) -> bool:
-    """Whether `folder` holds no excitation, or one of the same scenario and prescription."""
+def excitation_folder(
+    scenario: Scenario | TankScenario,
+    prescription: Prescription,
+    given: Path | None,
+    settings: Sequence[str] | None,
+    note: Callable[[str], None],
+) -> Path:
+    """The folder of an excitation: that `given`, else one of its own, unless there lies the same; as for a run."""
+    from slosh_cli.results.files import try_targets
     from slosh_cli.results.hdf5 import is_of
 
-    return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario, settings)
+    def fits(folder: Path) -> bool:
+        return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario, prescription.settings)
+
+    folder = given or free_folder(default_folder(scenario.name, settings), fits, note)
+    try_targets(folder, _FILES)
+    return folder
 
 
 def _columns(found: Excitation) -> dict[str, tuple[Channel, Vector]]:
@@ -271,34 +311,4 @@ def _columns(found: Excitation) -> dict[str, tuple[Channel, Vector]]:
         "moment_N_m": (CHANNELS["liquid_moment"], found.moment),
         "surface_front_m": (CHANNELS["surface_front"], found.surface_front),
         "surface_rear_m": (CHANNELS["surface_rear"], found.surface_rear),
-    }
-
-
-def keep_excitation(result: ExcitationResult, folder: Path, keeping: Keeping) -> dict[str, Any]:
-    """Write table and history into `folder`, then the figure; returns where those lie that could be written."""
-    from slosh_cli.results.channels import Channel
-    from slosh_cli.results.hdf5 import write_excitation
-    from slosh_cli.results.tables import write_table
-
-    found, columns = result.histories, _columns(result.histories)
-    values = zip(found.time, *(column for _, column in columns.values()), strict=True)
-    rows = [dict(zip((_COLUMNS[0], *columns), map(float, row), strict=True)) for row in values]
-    channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
-    channels |= dict(columns.values())
-    numbers: Mapping[str, Callable[[Path], object]] = {
-        _TABLE: lambda path: write_table(rows, path),
-        _HISTORY: lambda path: write_excitation(result.scenario, found.time, channels, _facts(result), path),
-    }
-    files = keeping.keep(folder, EXCITATION_FILES, numbers, writers(result.figures()))
-    return by_kind(files, table=_TABLE, history=_HISTORY)
-
-
-def _facts(result: ExcitationResult) -> dict[str, Any]:
-    """The attributes of the history file."""
-    facts = result.summary()
-    return facts | {
-        "settings": result.settings,
-        "warnings": "\n".join(facts["warnings"]),
-        "checks": json.dumps(facts["checks"]),
-        "recommendation": (facts["recommendation"] or {}).get("sentence", ""),
     }

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from slosh_cli.errors import SloshError
 
-OUTPUTS: Final = Path("outputs")
+_OUTPUTS: Final = Path("outputs")
 _LONGEST: Final = 80
 """Characters of a folder's name that tell what was set; more are told by a hash."""
 
@@ -68,7 +68,7 @@ def by_kind(files: Sequence[str], **kinds: str) -> dict[str, Any]:
     return named | {"figures": [file for file in files if file not in named.values()]}
 
 
-def default_folder(name: str, settings: Sequence[str] | None) -> Path:
+def default_folder(name: str, settings: Sequence[str] | None = None) -> Path:
     """``outputs/NAME``, or ``outputs/NAME-braking.torque=12-kN-m`` where `settings` (KEY=VALUE) were given.
 
     Who sets the name says by it what the settings are.
@@ -76,20 +76,22 @@ def default_folder(name: str, settings: Sequence[str] | None) -> Path:
     by_key = {text.partition("=")[0].strip(): text.strip() for text in settings or ()}
     told = sorted(text for key, text in by_key.items() if key != "description")
     if not told or "name" in by_key:
-        return OUTPUTS / name
+        return _OUTPUTS / name
     words = "-".join(re.sub(r"[^\w.=+,-]+", "-", text) for text in told)
     if len(words) > _LONGEST:
         words = f"{words[: _LONGEST - 9]}-{hashlib.sha256(' '.join(told).encode()).hexdigest()[:8]}"
-    return OUTPUTS / f"{name}-{words.rstrip('-.')}"
+    return _OUTPUTS / f"{name}-{words.rstrip('-.')}"
 
 
-def free_folder(default: Path, fits: Callable[[Path], bool]) -> Path:
+def free_folder(default: Path, fits: Callable[[Path], bool], note: Callable[[str], None]) -> Path:
     """`default`, or it with a number where it holds the results of something else: nothing is overwritten.
 
-    `fits` says whether a folder is free for this work, or holds earlier results of the same.
+    `fits` says whether a folder is free for this work, or holds earlier results of the same; `note` is told of another.
     """
     number, folder = 1, default
     while folder.exists() and not fits(folder):
         number += 1
         folder = default.with_name(f"{default.name}-{number}")
+    if folder != default:
+        note(f"{default} holds the results of other settings; these go to {folder}")
     return folder

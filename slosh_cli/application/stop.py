@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping, by_kind
+from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.report.record import FIGURE_NAMES, FORMATS
 from slosh_cli.scenario import Scenario, TankScenario, load_scenario
 
@@ -20,8 +21,7 @@ _HISTORY: Final = "run.h5"
 _SUMMARY: Final = "summary.csv"
 FIGURE_FILES: Final = tuple(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)
 """Every figure that a run may have, by the names of its files."""
-RUN_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
-"""Every file that a run may write."""
+_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
 
 
 def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recommendation]:
@@ -56,11 +56,22 @@ def simulate(
     return integrated(stop, progress=progress, cancel=cancel)
 
 
-def is_free_for_run(scenario: Scenario, folder: Path) -> bool:
-    """Whether `folder` holds no run, or one of the same scenario."""
+def run_folder(
+    scenario: Scenario, given: Path | None, settings: Sequence[str] | None, note: Callable[[str], None]
+) -> Path:
+    """The folder of a run: that `given`, else one of its own, unless what lies there is a run of the same scenario.
+
+    Raises FileError where it cannot take the files.
+    """
+    from slosh_cli.results.files import try_targets
     from slosh_cli.results.hdf5 import is_of
 
-    return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario)
+    def fits(folder: Path) -> bool:
+        return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario)
+
+    folder = given or free_folder(default_folder(scenario.name, settings), fits, note)
+    try_targets(folder, _FILES)
+    return folder
 
 
 def keep_run(result: Result, folder: Path, keeping: Keeping, *, figures: bool = True) -> dict[str, Any]:
@@ -78,4 +89,4 @@ def keep_run(result: Result, folder: Path, keeping: Keeping, *, figures: bool = 
 
     numbers = {_SUMMARY: partial(write_summary, result), _HISTORY: partial(write_history, result)}
     drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
-    return by_kind(keeping.keep(folder, RUN_FILES, numbers, drawn), history=_HISTORY, summary=_SUMMARY)
+    return by_kind(keeping.keep(folder, _FILES, numbers, drawn), history=_HISTORY, summary=_SUMMARY)

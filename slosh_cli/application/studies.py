@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -12,8 +11,9 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping
+from slosh_cli.application.keeping import Keeping, default_folder, free_folder
 from slosh_cli.errors import SloshError, UsageError
+from slosh_cli.report.study_pages import Page, figure_files, figure_name, pages
 from slosh_cli.results.result import Status
 from slosh_cli.scenario import Scenario
 from slosh_cli.study.build import grid, paper_wagon
@@ -31,10 +31,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slosh_cli.application.plotting import Figures
-    from slosh_cli.report.study_figures import Page
     from slosh_cli.study.claims import Verdict
 
-_FIGURE: Final = re.compile(r"braking_distance(?:_(?P<number>\d+))?\.(?P<kind>png|svg)")
+_MOST_PAGES: Final = 12
 
 
 @dataclass(frozen=True)
@@ -84,19 +83,23 @@ class OpenStudy:
 
         names = partial(columns, self.study)
         write = {TABLE: lambda path: write_rows(names(self.rows()), self.rows(), path)}
-        return next(iter(keeping.keep(self.folder, [TABLE, *figures_in(self.folder)], write, {})), None)
+        return next(iter(keeping.keep(self.folder, [TABLE, *figure_files(self.folder)], write, {})), None)
 
-    def keep_figures(self, keeping: Keeping, more: Callable[[int, int], None]) -> None:
-        """Draw the figures; `more` is told how many would be needed and how many are drawn, where these differ."""
+    def keep_figures(self, keeping: Keeping, more: Callable[[int, int], None]) -> list[str]:
+        """Draw the figures; returns those that are there, as paths.
+
+        `more` is told how many would be needed and how many are drawn, where these differ.
+        """
         with keeping.part("the figures"):
-            pages = _pages(self.study, self.rows(), more)
-            if pages:
+            drawn = _pages(self.study, self.rows(), more)
+            if drawn:
                 from slosh_cli.report.study_figures import draw_study
 
-                draw_study(pages, self.folder)
+                draw_study(drawn, self.folder)
         unwritten = self.planned.unwritten
         if unwritten:
             keeping.failures.append(f"{len(unwritten)} histories: {unwritten[0]}; the same command tries them again")
+        return [str(self.folder / name) for name in figure_files(self.folder)]
 
 
 @contextmanager
@@ -129,38 +132,30 @@ def workers_for(stops: int, threads: int | None = None, cluster: str | None = No
     return nullcontext(Threads(max(1, min(threads or available_cores(), stops))))
 
 
-def is_free_for_study(study: Study, folder: Path) -> bool:
-    """Whether `folder` holds no study, or an earlier one which this one repeats or extends."""
-    if is_held(folder):  # and refused, with the holder's name, when it is to be taken
-        return True
-    if not (folder / JOURNAL).exists():
-        return not (folder / TABLE).exists()
-    try:
-        with Journal(folder / JOURNAL, read_only=True) as journal:
-            earlier = journal.study()
-    except SloshError:  # told when it is opened for good
-        return True
-    return earlier is None or extends(study_key(study), earlier)
+def study_folder(study: Study, given: Path | None, settings: Sequence[str] | None, note: Callable[[str], None]) -> Path:
+    """The folder of a study: that `given`, that of an earlier study which it repeats or extends, or a new one."""
 
+    def fits(folder: Path) -> bool:
+        if is_held(folder):  # and refused, with the holder's name, when it is to be taken
+            return True
+        if not (folder / JOURNAL).exists():
+            return not (folder / TABLE).exists()
+        try:
+            with Journal(folder / JOURNAL, read_only=True) as journal:
+                earlier = journal.study()
+        except SloshError:  # told when it is opened for good
+            return True
+        return earlier is None or extends(study_key(study), earlier)
 
-def figures_in(folder: Path) -> list[str]:
-    """Names of the figures of studies in `folder`, by their numbers."""
-    found = [(match, file.name) for file in folder.iterdir() if (match := _FIGURE.fullmatch(file.name))]
-    return [name for _, name in sorted(found, key=lambda one: (int(one[0]["number"] or 0), one[0]["kind"]))]
+    return given or free_folder(default_folder(study.name, settings), fits, note)
 
 
 def _pages(study: Study, found: Iterator[dict[str, Any]], more: Callable[[int, int], None]) -> list[Page]:
     """The figures of a study, no more than can be looked at."""
-    from slosh_cli.report.study_pages import pages
-
     drawn = pages(study, found)
-    if not drawn:
-        return []
-    from slosh_cli.report.study_figures import MOST_PAGES
-
-    if len(drawn) > MOST_PAGES:
-        more(len(drawn), MOST_PAGES)
-    return drawn[:MOST_PAGES]
+    if len(drawn) > _MOST_PAGES:
+        more(len(drawn), _MOST_PAGES)
+    return drawn[:_MOST_PAGES]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -202,9 +197,8 @@ class StudyResult:
 
             return braking_distance(page)
 
-        pages = _pages(self.study, map(dict, self.rows), lambda *_: None)
-        numbers = [""] if len(pages) == 1 else [f"_{number}" for number in range(1, len(pages) + 1)]
-        return {f"braking_distance{number}": partial(draw, page) for number, page in zip(numbers, pages, strict=True)}
+        found = _pages(self.study, map(dict, self.rows), lambda *_: None)
+        return {figure_name(number, len(found)): partial(draw, page) for number, page in enumerate(found, start=1)}
 
 
 def sweep(
@@ -242,7 +236,6 @@ def sweep(
                 work.compute(workers, cancel or Event(), progress)
         if folder is not None:
             table = work.keep_table(keeping)
-            work.keep_figures(keeping, lambda *_: None)
-            files = {"table": table, "figures": [str(work.folder / name) for name in figures_in(work.folder)]}
+            files = {"table": table, "figures": work.keep_figures(keeping, lambda *_: None)}
         found = tuple(work.rows())
         return StudyResult(study, found, work.planned.reused, work.claims(), files, tuple(keeping.failures))

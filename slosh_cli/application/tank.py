@@ -10,10 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping, by_kind
+from slosh_cli.application.keeping import Keeping, by_kind, default_folder
 from slosh_cli.application.plotting import writers
 from slosh_cli.errors import UsageError
 from slosh_cli.report.record import FORMATS
+from slosh_cli.results.files import try_targets
 from slosh_cli.results.tables import write_table
 from slosh_cli.results.validity import Check, plain, warnings_of
 from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
@@ -44,7 +45,7 @@ MODE_QUANTITIES: Final = {
 """Key of JSON and CSV -> name of the quantity in `ModeComparison.deviations`."""
 _PICTURE: Final = re.compile(r"mode_\d+\.(png|svg)")
 _CHART_TABLE: Final = "fill_chart.csv"
-CHART_FILES: Final = (_CHART_TABLE, *(f"fill_chart.{suffix}" for suffix in FORMATS))
+_CHART_FILES: Final = (_CHART_TABLE, *(f"fill_chart.{suffix}" for suffix in FORMATS))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +116,15 @@ class TankCoefficients:
 
         return {f"mode_{mode.n}": partial(draw, mode) for mode in self.solved.modes}
 
+    def keep(self, folder: Path, keeping: Keeping) -> dict[str, Any]:
+        """Write the table of all modes into `folder`, then their pictures; returns where those lie that could be."""
+        drawn = writers(self.figures())
+        names = [COEFFICIENTS_TABLE, *(f"{name}.{suffix}" for name in drawn for suffix in FORMATS)]
+        earlier = [file.name for file in folder.glob("mode_*.*") if _PICTURE.fullmatch(file.name)]
+        owned = [*names, *(name for name in earlier if name not in names)]
+        numbers = {COEFFICIENTS_TABLE: partial(write_table, self.rows())}
+        return by_kind(keeping.keep(folder, owned, numbers, drawn), table=COEFFICIENTS_TABLE)
+
 
 def _values(n: int, mode: SloshMode, fraction: float | None) -> dict[str, Any]:
     values = {key: getattr(mode, name) for key, name in MODE_QUANTITIES.items() if name != "mass_fraction"}
@@ -152,16 +162,6 @@ def coefficients(scenario: Scenario | TankScenario | str | Path, modes: int | No
         warnings.append(f"no pitch inertia of an ideal liquid under a lid: {error.message}")
     solved = tank_modes(tank, len(rows))  # kept from the comparison
     return TankCoefficients(found, frozen_load(tank), rows, solved, lidded, verdicts, advice, warnings)
-
-
-def keep_coefficients(found: TankCoefficients, folder: Path, keeping: Keeping) -> dict[str, Any]:
-    """Write the table of all modes into `folder`, then a picture of each; returns where those lie that could be."""
-    drawn = writers(found.figures())
-    names = [COEFFICIENTS_TABLE, *(f"{name}.{suffix}" for name in drawn for suffix in FORMATS)]
-    earlier = [file.name for file in folder.glob("mode_*.*") if _PICTURE.fullmatch(file.name)]
-    owned = [*names, *(name for name in earlier if name not in names)]
-    numbers = {COEFFICIENTS_TABLE: partial(write_table, found.rows())}
-    return by_kind(keeping.keep(folder, owned, numbers, drawn), table=COEFFICIENTS_TABLE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,6 +204,11 @@ class TankChart:
 
         return {"fill_chart": draw}
 
+    def keep(self, folder: Path, keeping: Keeping) -> dict[str, Any]:
+        """Write the table into `folder`, then the figure; returns where those lie that could be written."""
+        numbers = {_CHART_TABLE: partial(write_table, self.rows())}
+        return by_kind(keeping.keep(folder, _CHART_FILES, numbers, writers(self.figures())), table=_CHART_TABLE)
+
 
 def chart_fills(
     scenario: Scenario | TankScenario,
@@ -215,8 +220,8 @@ def chart_fills(
     return TankChart(scenario, fill_chart(scenario.tank, fills, modes or scenario.tank.modes, progress))
 
 
-def keep_chart(found: TankChart, folder: Path, keeping: Keeping) -> dict[str, Any]:
-    """Write the table into `folder`, then the figure; returns where those lie that could be written."""
-    numbers = {_CHART_TABLE: partial(write_table, found.rows())}
-    files = keeping.keep(folder, CHART_FILES, numbers, writers(found.figures()))
-    return by_kind(files, table=_CHART_TABLE)
+def chart_folder(scenario: Scenario | TankScenario, given: Path | None, settings: Sequence[str]) -> Path:
+    """The folder of a chart: that `given`, else one of its own. Raises FileError where it cannot take the files."""
+    folder = given or default_folder(scenario.name, settings)
+    try_targets(folder, _CHART_FILES)
+    return folder

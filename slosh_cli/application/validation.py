@@ -8,15 +8,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final
 
-from slosh_cli.application.keeping import OUTPUTS, Keeping, by_kind
+from slosh_cli.application.keeping import Keeping, by_kind, default_folder
 from slosh_cli.application.plotting import case_figures, writers
 from slosh_cli.report.record import FORMATS
+from slosh_cli.results.files import try_targets
 from slosh_cli.validation import registry
 from slosh_cli.validation.case import CaseResult
 from slosh_cli.validation.data_file import CaseData
 
 _REPORT: Final = "report.md"
-_FOLDER: Final = OUTPUTS / "validation"
 _LONGEST: Final = 80
 """Characters of a folder's name that names the cases."""
 
@@ -36,17 +36,21 @@ def validate(
     return tuple(results)
 
 
-def validation_folder(names: Sequence[str] | None, cases: Sequence[CaseData]) -> Path:
-    """The folder of a report that was given none: a part of the cases does not replace the report of all."""
-    if not names:
-        return _FOLDER
-    told = "+".join(data.name for data in cases)
-    short = f"{len(cases)}-cases-{sha256(told.encode()).hexdigest()[:8]}"
-    return _FOLDER / (told if len(told) <= _LONGEST else short)
+def validation_folder(cases: Sequence[CaseData], given: Path | None, *, part: bool) -> Path:
+    """The folder of a report: that `given`, else one where a `part` of the cases does not replace the report of all.
+
+    Raises FileError where it cannot take the files.
+    """
+    folder = given or default_folder("validation")
+    if part and given is None:
+        told = "+".join(data.name for data in cases)
+        short = f"{len(cases)}-cases-{sha256(told.encode()).hexdigest()[:8]}"
+        folder /= told if len(told) <= _LONGEST else short
+    try_targets(folder, _files(cases))
+    return folder
 
 
-def validation_files(cases: Sequence[CaseData]) -> list[str]:
-    """Every file that the cases may write."""
+def _files(cases: Sequence[CaseData]) -> list[str]:
     return [_REPORT, *(f"{data.name}.{suffix}" for data in cases for suffix in FORMATS)]
 
 
@@ -60,5 +64,5 @@ def keep_validation(
 
     text = report(results, missing, f"slosh {__version__}: validation")
     drawn = {name: write for result in results for name, write in writers(case_figures(result)).items()}
-    owned = validation_files([result.data for result in results])
+    owned = _files([result.data for result in results])
     return by_kind(keeping.keep(folder, owned, {_REPORT: partial(write_text, text)}, drawn), report=_REPORT)

@@ -9,13 +9,13 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import say
 from slosh_cli.errors import UsageError
 
-DEFAULT: Final = "tank-wagon"
+_DEFAULT: Final = "tank-wagon"
 
 
 def init(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")
-    ] = DEFAULT,
+    ] = _DEFAULT,
     output: Annotated[
         Path | None,
         typer.Option(

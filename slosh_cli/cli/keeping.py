@@ -2,13 +2,12 @@
 
 import os
 import traceback
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
-from slosh_cli.application.keeping import Keeping, free_folder
+from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain, note
+from slosh_cli.cli.output import complain
 
 
 def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
@@ -19,14 +18,6 @@ def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
     for failure in keeping.failures:
         complain(f"error: {failure}")
     return ExitCode.BAD_INPUT if keeping.failures and code is ExitCode.DONE else code
-
-
-def folder_of_its_own(default: Path, fits: Callable[[Path], bool]) -> Path:
-    """`default`, or another folder, of which is told, where `default` holds results of something else."""
-    folder = free_folder(default, fits)
-    if folder != default:
-        note(f"{default} holds the results of other settings; these go to {folder}")
-    return folder
 
 
 def files_text(files: Mapping[str, Any]) -> str:

@@ -1,14 +1,13 @@
 """`slosh run`: one stop, its history, its summary and its figures."""
 
 import threading
-from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile
-from slosh_cli.cli.output import complain, say_json, warn
+from slosh_cli.cli.output import complain, note, say_json, warn
 
 if TYPE_CHECKING:
     from slosh_cli.results.result import Result
@@ -27,18 +26,15 @@ def run(
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.
     """
-    from slosh_cli.application.keeping import Keeping, default_folder
-    from slosh_cli.application.stop import RUN_FILES, is_free_for_run, keep_run
-    from slosh_cli.cli.keeping import folder_of_its_own, told
+    from slosh_cli.application.keeping import Keeping
+    from slosh_cli.application.stop import keep_run, run_folder
+    from slosh_cli.cli.keeping import told
     from slosh_cli.cli.reading import read_scenario
     from slosh_cli.cli.summary import show_files, show_run
-    from slosh_cli.results.files import try_targets
     from slosh_cli.results.result import Status
 
     scenario = read_scenario(scenario_file, overrides)
-    default = default_folder(scenario.name, overrides)
-    folder = output or folder_of_its_own(default, partial(is_free_for_run, scenario))
-    try_targets(folder, RUN_FILES)
+    folder = run_folder(scenario, output, overrides, note)
     result = _simulate(scenario)
     stopped, keeping = result.status is Status.STOPPED, Keeping()
     if not as_json:

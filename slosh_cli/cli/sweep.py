@@ -2,7 +2,6 @@
 
 import os
 import time
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -113,16 +112,14 @@ def sweep(
     began = time.perf_counter()
     for variable in _ONE_THREAD:
         os.environ[variable] = "1"
-    from slosh_cli.application.keeping import default_folder
-    from slosh_cli.application.studies import is_free_for_study
-    from slosh_cli.cli.keeping import folder_of_its_own
+    from slosh_cli.application.studies import study_folder
+    from slosh_cli.cli.output import note
     from slosh_cli.cli.sweep_task import Task, carry_out, estimate
     from slosh_cli.study.build import Wishes, build
 
     if jobs is not None and cluster is not None:
         raise UsageError("--jobs is for this machine; a cluster has its own threads: leave one of them out", "--jobs")
     study = build(Wishes(scenario_file, overrides or (), speeds, torques, vary or (), liquids, histories))
-    default = default_folder(study.name, overrides)
-    folder = output or folder_of_its_own(default, partial(is_free_for_study, study))
+    folder = study_folder(study, output, overrides, note)
     task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began)
     return estimate(task) if dry_run else carry_out(task)

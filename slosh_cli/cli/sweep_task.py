@@ -108,7 +108,6 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 
 def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
-    from slosh_cli.application.studies import figures_in
     from slosh_cli.cli.sweep_output import claim_text, show_study
     from slosh_cli.results.result import Status
 
@@ -127,8 +126,7 @@ def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
         show_study(task.study, work.rows())
         if claims:
             say(claims)
-    work.keep_figures(keeping, _some_of_them)
-    figures = [str(task.folder / name) for name in figures_in(task.folder)]
+    figures = work.keep_figures(keeping, _some_of_them)
     if task.as_json:
         _say_answer(task, written - failed, failed, work.planned.reused, table, figures, keeping.failures)
         if claims:

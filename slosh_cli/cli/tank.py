@@ -80,10 +80,10 @@ def _excite(
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
-    from slosh_cli.application.excitation import prescribed
+    from slosh_cli.application.excitation import Prescription
     from slosh_cli.cli.tank_excite import run_excitation
 
-    read = partial(prescribed, deceleration, ramp, duration, table, interval, "--{}".format)
+    read = partial(Prescription.read, deceleration, ramp, duration, table, interval, "--{}".format)
     return run_excitation(scenario_file, read, overrides, output, as_json=as_json)
 
 

@@ -4,15 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from slosh_cli.application.keeping import Keeping, default_folder
-from slosh_cli.application.tank import CHART_FILES, chart_fills, keep_chart
+from slosh_cli.application.keeping import Keeping
+from slosh_cli.application.tank import chart_fills, chart_folder
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.keeping import files_text, told
 from slosh_cli.cli.output import say, say_json, warn
 from slosh_cli.cli.progress import counting
 from slosh_cli.cli.reading import read_any_scenario
 from slosh_cli.errors import UsageError, ValueRefused
-from slosh_cli.results.files import try_targets
 from slosh_cli.study.axis import expanded
 
 _ALL: Final = "0.05:0.95:0.05"
@@ -34,8 +33,7 @@ def run_chart(
     scenario = read_any_scenario(scenario_file, overrides)
     levels = _read_fills(fills)
     settings = [*(overrides or ()), *([f"fills={fills}"] if fills != _ALL else [])]
-    folder = output or default_folder(scenario.name, settings)
-    try_targets(folder, CHART_FILES)
+    folder = chart_folder(scenario, output, settings)
     with counting("fillings") as progress:
         found = chart_fills(scenario, levels, modes, progress)
     skipped = [f"filling {level:g} is left out: {reason}" for level, reason in found.skipped.items()]
@@ -45,7 +43,7 @@ def run_chart(
     if not as_json:
         numbers = ", ".join(map(str, found.chart.numbers))
         say(f"{scenario.name}: {len(levels) - len(skipped)} fillings, n = {numbers}")
-    files = keep_chart(found, folder, keeping)
+    files = found.keep(folder, keeping)
     if as_json:
         say_json({"name": scenario.name, "rows": rows, "warnings": [*skipped, *keeping.failures], "files": files})
     else:

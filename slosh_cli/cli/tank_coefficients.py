@@ -5,13 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slosh_cli.application.keeping import Keeping
-from slosh_cli.application.tank import (
-    COEFFICIENTS_TABLE,
-    MODE_QUANTITIES,
-    TankCoefficients,
-    coefficients,
-    keep_coefficients,
-)
+from slosh_cli.application.tank import COEFFICIENTS_TABLE, MODE_QUANTITIES, TankCoefficients, coefficients
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.keeping import files_text, told
 from slosh_cli.cli.output import say, say_json, show, warn
@@ -34,7 +28,7 @@ def show_coefficients(
     found, keeping = coefficients(scenario, modes), Keeping()
     if not as_json:
         _show(found)
-    files = keep_coefficients(found, output, keeping) if output is not None else {}
+    files = found.keep(output, keeping) if output is not None else {}
     if as_json:
         answer = found.summary()
         say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})

@@ -1,25 +1,16 @@
 """What `slosh tank excite` prints."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from slosh_cli.application.excitation import (
-    EXCITATION_FILES,
-    ExcitationResult,
-    Prescription,
-    excited,
-    is_free_for_excitation,
-    keep_excitation,
-)
-from slosh_cli.application.keeping import Keeping, default_folder
+from slosh_cli.application.excitation import ExcitationResult, Prescription, excitation_folder
+from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.keeping import files_text, folder_of_its_own, told
-from slosh_cli.cli.output import complain, say, say_json, show, warn
+from slosh_cli.cli.keeping import files_text, told
+from slosh_cli.cli.output import complain, note, say, say_json, show, warn
 from slosh_cli.cli.progress import announce_compilation
 from slosh_cli.cli.reading import read_any_scenario
-from slosh_cli.results.files import try_targets
 
 _KERNELS: Final = {
     "modal": "excite_kernels.modal_history",
@@ -39,19 +30,17 @@ def run_excitation(
     """Compute, write and tell."""
     scenario = read_any_scenario(scenario_file, overrides)
     prescription = read_prescription()
-    fits = partial(is_free_for_excitation, scenario, prescription.settings)
-    folder = output or folder_of_its_own(default_folder(scenario.name, overrides), fits)
-    try_targets(folder, EXCITATION_FILES)
+    folder = excitation_folder(scenario, prescription, output, overrides, note)
     if scenario.tank.liquid.model in _KERNELS:
         announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
-    result = excited(scenario, prescription)
+    result = prescription.carry_out(scenario)
     if result.histories.time.size < 2:
         complain(f"failed: {result.reason}. {_REMEDY}")
         return ExitCode.NO_ANSWER
     answer, keeping = result.summary(), Keeping()
     if not as_json:
         _show(result, answer)
-    files = keep_excitation(result, folder, keeping)
+    files = result.keep(folder, keeping)
     if as_json:
         say_json(answer | {"warnings": [*result.warnings, *keeping.failures], "files": files})
         for warning in result.warnings:

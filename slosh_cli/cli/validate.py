@@ -39,8 +39,7 @@ def validate(
 
     Closed forms, quadratures, published numbers, other codes. Exit code 1 when a case misses its stated tolerance.
     """
-    from slosh_cli.application.validation import validation_files, validation_folder
-    from slosh_cli.results.files import try_targets
+    from slosh_cli.application.validation import validation_folder
     from slosh_cli.validation.registry import chosen, left_out
 
     cases = chosen(names or [])
@@ -48,8 +47,7 @@ def validate(
     if list_only:
         _list(cases, missing, as_json=as_json)
         return ExitCode.DONE
-    folder = output or validation_folder(names, cases)
-    try_targets(folder, validation_files(cases))
+    folder = validation_folder(cases, output, part=bool(names))
     return _carry_out(names or [], missing, folder, as_json=as_json)
 
 

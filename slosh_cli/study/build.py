@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -11,10 +11,10 @@ from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.scenario import Scenario, find_packaged, load_scenario, scenario_to_yaml
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values, expanded, measured
-from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study, with_axes
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 from slosh_cli.study.study_file import is_study_file, read_study_file
 
-PAPER_WAGON: Final = "paper-80-liquid"
+_PAPER_WAGON: Final = "paper-80-liquid"
 """The packaged scenario that a study without one is about."""
 _PAPER_STUDY: Final = "paper-wagon"
 """Name of a study without a scenario."""
@@ -46,7 +46,7 @@ def build(wishes: Wishes) -> Study:
     Raises ScenarioError and UsageError for what is wrong with it, as far as that shows without running anything.
     """
     file, name, base, axes = _source(wishes.file, wishes.overrides)
-    axes = with_axes(axes, [_parsed(text) for text in wishes.vary])
+    axes = _with_axes(axes, [_parsed(text) for text in wishes.vary])
     return _completed(wishes, file, name, base, axes)
 
 
@@ -59,19 +59,19 @@ def grid(
     as by `build`, and so are the errors.
     """
     file, name, base, axes = _source(scenario, ())
-    axes = with_axes(axes, [_given(base, key, spec) for key, spec in (vary or {}).items()])
+    axes = _with_axes(axes, [_given(base, key, spec) for key, spec in (vary or {}).items()])
     return _completed(Wishes(histories=histories), file, name, base, axes)
 
 
 def _completed(wishes: Wishes, file: str, name: str, base: Scenario, axes: tuple[Axis, ...]) -> Study:
-    axes = with_axes(axes, _braking_axes(wishes, axes))
+    axes = _with_axes(axes, _braking_axes(wishes, axes))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
     return Study(name, base, axes, file, wishes.histories)
 
 
 def paper_wagon() -> Scenario:
     """The wagon of the paper as it comes with the program."""
-    return load_scenario(find_packaged(PAPER_WAGON))
+    return load_scenario(find_packaged(_PAPER_WAGON))
 
 
 def _source(
@@ -79,8 +79,8 @@ def _source(
 ) -> tuple[str, str, Scenario, tuple[Axis, ...]]:
     """What messages call the source, the study's name, the base scenario and the axes of a study file."""
     if source is None:
-        wagon = load_scenario(find_packaged(PAPER_WAGON), overrides)
-        return _PAPER_STUDY, _PAPER_STUDY if wagon.name == PAPER_WAGON else wagon.name, wagon, ()
+        wagon = load_scenario(find_packaged(_PAPER_WAGON), overrides)
+        return _PAPER_STUDY, _PAPER_STUDY if wagon.name == _PAPER_WAGON else wagon.name, wagon, ()
     if isinstance(source, Scenario):
         return source.name, source.name, source, ()
     if is_study_file(Path(source)):
@@ -151,3 +151,10 @@ def _with_unit(base: Scenario, key: str, value: Any) -> Any:
         own = own.get(step) if isinstance(own, dict) else None
     told = measured(own) if isinstance(own, str) else None
     return f"{value!r} {told[1]}" if told else value
+
+
+def _with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
+    """`axes`, then `others`; one of these that shares its key with one of those takes its place."""
+    found = {axis.key: axis for axis in axes}
+    found |= {axis.key: axis for axis in others}
+    return tuple(found.values())

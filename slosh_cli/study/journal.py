@@ -22,14 +22,14 @@ from slosh_cli.study.outcome import Outcome
 from slosh_cli.version import __version__
 
 JOURNAL: Final = "journal.sqlite"
-FORMAT: Final = 1
+_FORMAT: Final = 1
 
 _TABLES: Final = (
     "CREATE TABLE session (id INTEGER PRIMARY KEY, started TEXT NOT NULL, program TEXT NOT NULL, sources TEXT NOT NULL,"
     " circumstances TEXT NOT NULL)",
     "CREATE TABLE stop (key TEXT PRIMARY KEY, status TEXT NOT NULL, final INTEGER NOT NULL, seconds REAL NOT NULL,"
     " finished TEXT NOT NULL, session INTEGER NOT NULL REFERENCES session (id), answer TEXT NOT NULL)",
-    f"PRAGMA user_version = {FORMAT}",
+    f"PRAGMA user_version = {_FORMAT}",
 )
 _ADD: Final = (
     "INSERT INTO stop (key, status, final, seconds, finished, session, answer) VALUES (?, ?, ?, ?, ?, ?, ?)"
@@ -65,7 +65,7 @@ class Journal:
 
     def _open(self, *, read_only: bool) -> None:
         (found,) = self._file.execute("PRAGMA user_version").fetchone()
-        if found not in (0, FORMAT):
+        if found not in (0, _FORMAT):
             raise FileError(f"{self.path} is the journal of another version of slosh (format {found})", str(self.path))
         if read_only:
             return

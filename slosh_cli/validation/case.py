@@ -11,7 +11,7 @@ from typing import Any
 from slosh_cli.validation.chart import Chart
 from slosh_cli.validation.data_file import CaseData, Kind
 
-Value = float | str | None
+_Value = float | str | None
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class Row:
     """
 
     quantity: str
-    value: Value
-    reference: Value
+    value: _Value
+    reference: _Value
     deviation: float | None
     tolerance: float | None
     source: str
@@ -100,7 +100,7 @@ class Findings:
         """A verdict in words beside the one that the data file states."""
         self._add(quantity, found, stated, float(found != stated), 0.0, source, "verdict")
 
-    def note(self, quantity: str, value: Value, reference: Value = None, source: str = "") -> None:
+    def note(self, quantity: str, value: _Value, reference: _Value = None, source: str = "") -> None:
         """Something worth knowing that decides nothing."""
         deviation = None
         if isinstance(value, float) and isinstance(reference, float) and reference:
@@ -110,8 +110,8 @@ class Findings:
     def _add(
         self,
         quantity: str,
-        value: Value,
-        reference: Value,
+        value: _Value,
+        reference: _Value,
         deviation: float | None,
         tolerance: float | None,
         source: str,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from slosh_cli.validation.case import CaseResult, Row, Value
+from slosh_cli.validation.case import CaseResult, Row
 from slosh_cli.validation.data_file import CaseData
 
 PASSED, FELL_SHORT = "passed", "fell short"
 
 
-def number(value: Value, digits: int = 7) -> str:
+def number(value: float | str | None, digits: int = 7) -> str:
     """A value as a person reads it."""
     if value is None:
         return ""
