@@ -1,20 +1,19 @@
-"""The tank alone under a prescribed deceleration: what is prescribed, what the liquid does, the files."""
+"""The tank alone under a prescribed deceleration: what the liquid does, and the files."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.application.plotting import writers
-from slosh_cli.errors import UsageError, ValueRefused
+from slosh_cli.application.prescription import Amount, Prescription
 from slosh_cli.report.record import FORMATS
 from slosh_cli.results.validity import Check, plain, warnings_of
-from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario, parse_quantity
+from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,67 +23,14 @@ if TYPE_CHECKING:
     from slosh_cli.results.channels import Channel
     from slosh_cli.results.recommendation import Recommendation
     from slosh_cli.results.result import Vector
-    from slosh_cli.scenario.csv_table import Table
-    from slosh_cli.solver.excite import Deceleration, Excitation
+    from slosh_cli.solver.excite import Excitation
 
 _TABLE: Final = "excite.csv"
 _HISTORY: Final = "excite.h5"
 _FILES: Final = (_TABLE, _HISTORY, *(f"excite.{suffix}" for suffix in FORMATS))
-_COLUMNS: Final = ("time_s", "deceleration_m_s2")
-_MOST_ROWS: Final = 1_000_000
-_LARGEST: Final = 1000.0
-"""Decelerations beyond this, m/s^2, are a slip in the unit."""
-
-_Amount = str | float
-"""A quantity with its unit (``"0.2 g"``), or an SI number."""
 
 
-@dataclass(frozen=True)
-class Prescription:
-    """A deceleration over `duration` s, told every `interval` s; `settings` tell it apart from others."""
-
-    deceleration: Deceleration
-    duration: float
-    interval: float
-    settings: str
-
-    @classmethod
-    def read(
-        cls,
-        deceleration: _Amount | None,
-        ramp: _Amount | None,
-        duration: _Amount,
-        table: Path | None,
-        interval: _Amount,
-        spelt: Callable[[str], str] = str,
-    ) -> Prescription:
-        """The prescription that is asked for; `spelt` says what messages call an argument.
-
-        Raises UsageError where it makes no sense, ScenarioError for a table that cannot be used.
-        """
-        span, step = _positive(duration, spelt("duration")), _positive(interval, spelt("interval"))
-        if span / step > _MOST_ROWS:
-            remedy = f"lengthen {spelt('interval')} or shorten {spelt('duration')}"
-            raise UsageError(f"a history has at most {_MOST_ROWS} rows; {remedy}", spelt("interval"))
-        found, where = _course(deceleration, ramp, table, spelt)
-        if found.largest(span) == 0.0:
-            rule = f"the tank must be decelerated at some time within {spelt('duration')}"
-            raise UsageError(f"{where}: {rule}", where)
-        if found.largest(span) > _LARGEST:
-            raise UsageError(f"{where}: must stay below {_LARGEST:g} m/s^2, or the unit is another one", where)
-        content = None if table is None else hashlib.sha256(table.read_bytes()).hexdigest()
-        return cls(found, span, step, json.dumps([deceleration, ramp, duration, interval, content]))
-
-    def carry_out(self, scenario: Scenario | TankScenario) -> ExcitationResult:
-        """What the liquid does. Raises TankError where slosh coefficients cannot be computed."""
-        from slosh_cli.solver.excite import excite as integrated
-
-        found = integrated(scenario.tank, self.deceleration, self.duration, self.interval)
-        checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
-        return ExcitationResult(scenario, found, checks, advice, self.settings)
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ExcitationResult:
     """What the liquid of a scenario's tank did to it; `histories` hold forces, moments and levels over time.
 
@@ -92,11 +38,14 @@ class ExcitationResult:
     purpose. settings: what was prescribed, as text.
     """
 
-    scenario: Scenario | TankScenario = field(repr=False)
-    histories: Excitation = field(repr=False)
-    checks: tuple[Check, ...] = field(repr=False)
-    recommendation: Recommendation | None = field(repr=False)
+    scenario: Scenario | TankScenario
+    histories: Excitation
+    checks: tuple[Check, ...]
+    recommendation: Recommendation | None
     settings: str
+
+    def __repr__(self) -> str:
+        return f"ExcitationResult({self.conditions})"
 
     @property
     def reason(self) -> str:
@@ -154,7 +103,7 @@ class ExcitationResult:
         import pandas as pd
 
         columns = {name: values for name, (_, values) in _columns(self.histories).items()}
-        return pd.DataFrame(columns, index=pd.Index(self.histories.time, name=_COLUMNS[0]))
+        return pd.DataFrame(columns, index=pd.Index(self.histories.time, name="time_s"))
 
     def figures(self) -> Figures:
         """What draws deceleration, force, moment and levels over time."""
@@ -175,7 +124,7 @@ class ExcitationResult:
 
         found, columns = self.histories, _columns(self.histories)
         values = zip(found.time, *(column for _, column in columns.values()), strict=True)
-        rows = [dict(zip((_COLUMNS[0], *columns), map(float, row), strict=True)) for row in values]
+        rows = [dict(zip(("time_s", *columns), map(float, row), strict=True)) for row in values]
         channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
         channels |= dict(columns.values())
         numbers: Mapping[str, Callable[[Path], object]] = {
@@ -198,12 +147,12 @@ class ExcitationResult:
 
 def excite(
     scenario: Scenario | TankScenario | str | Path,
-    deceleration: _Amount | None = None,
-    ramp: _Amount | None = None,
-    duration: _Amount = "40 s",
+    deceleration: Amount | None = None,
+    ramp: Amount | None = None,
+    duration: Amount = "40 s",
     *,
     table: str | Path | None = None,
-    interval: _Amount = "10 ms",
+    interval: Amount = "10 ms",
 ) -> ExcitationResult:
     """Decelerate the tank of a scenario, of a stop or of a tank alone, or of its file, without pitching it.
 
@@ -214,7 +163,16 @@ def excite(
     """
     found = load_any_scenario(scenario) if isinstance(scenario, str | Path) else scenario
     file = None if table is None else Path(table)
-    return Prescription.read(deceleration, ramp, duration, file, interval).carry_out(found)
+    return excited(Prescription.read(deceleration, ramp, duration, file, interval), found)
+
+
+def excited(prescription: Prescription, scenario: Scenario | TankScenario) -> ExcitationResult:
+    """What the liquid does under a prescription. Raises TankError where slosh coefficients cannot be computed."""
+    from slosh_cli.solver.excite import excite as integrated
+
+    found = integrated(scenario.tank, prescription.deceleration, prescription.duration, prescription.interval)
+    checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
+    return ExcitationResult(scenario, found, checks, advice, prescription.settings)
 
 
 def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tuple[Check, ...], Recommendation | None]:
@@ -229,58 +187,6 @@ def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tup
     advice = recommend(tank, found.largest_deceleration)
     motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=scenario.tank.fill < NEARLY_FULL)
     return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
-
-
-def _course(
-    deceleration: _Amount | None, ramp: _Amount | None, table: Path | None, spelt: Callable[[str], str]
-) -> tuple[Deceleration, str]:
-    """The deceleration over time, and what messages call it."""
-    from slosh_cli.solver.excite import Deceleration
-
-    level, ramped = spelt("deceleration"), spelt("ramp")
-    if (deceleration is None) == (table is None):
-        raise UsageError(f"say how the tank is decelerated: {level} '0.2 g', or {spelt('table')} FILE.csv", "excite")
-    if table is not None:
-        if ramp is not None:
-            raise UsageError(f"{ramped} goes with {level}; a table has its own course", ramped)
-        return Deceleration.table(_rows_of(table)), str(table)
-    reached = _si(deceleration or 0.0, "acceleration", level)
-    within = 0.0 if ramp is None else _si(ramp, "time", ramped)
-    if within < 0.0:
-        raise UsageError(f"{ramped} must not be negative; given `{ramp}`", ramped)
-    return Deceleration.ramped(reached, within), level
-
-
-def _rows_of(file: Path) -> list[tuple[float, float]]:
-    """Rows (s, m/s^2) of a CSV file with the columns of _COLUMNS; raises ScenarioError with file and line."""
-    from slosh_cli.scenario.csv_table import read_table
-
-    table = read_table(file, _COLUMNS, _times_do_not_fall)
-    return list(zip(*(table.columns[column] for column in _COLUMNS), strict=True))
-
-
-def _times_do_not_fall(table: Table) -> None:
-    times = table.columns[_COLUMNS[0]]
-    for line, before, time in zip(table.lines[1:], times, times[1:], strict=False):
-        if time < before:
-            given = f"{time:g} s after {before:g} s"
-            table.refuse(line, _COLUMNS[0], "must not fall from row to row", given, "sort the rows by time")
-
-
-def _si(amount: _Amount, dimension: str, name: str) -> float:
-    if not isinstance(amount, str):
-        return float(amount)
-    try:
-        return parse_quantity(amount, dimension)
-    except ValueRefused as refused:
-        raise UsageError(f"{name} {refused}", name) from refused
-
-
-def _positive(amount: _Amount, name: str) -> float:
-    value = _si(amount, "time", name)
-    if not value > 0.0:
-        raise UsageError(f"{name} must be positive; given `{amount}`", name)
-    return value
 
 
 def excitation_folder(

@@ -48,7 +48,7 @@ _CHART_TABLE: Final = "fill_chart.csv"
 _CHART_FILES: Final = (_CHART_TABLE, *(f"fill_chart.{suffix}" for suffix in FORMATS))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TankCoefficients:
     """Slosh modes of a scenario's tank, computed and given, with its frozen load.
 
@@ -56,14 +56,18 @@ class TankCoefficients:
     lidded_inertia: kg m^2, None where it could not be computed.
     """
 
-    scenario: Scenario | TankScenario = field(repr=False)
+    scenario: Scenario | TankScenario
     load: FrozenLoad
     modes: Sequence[ModeComparison]
-    solved: LongitudinalModes = field(repr=False)
+    solved: LongitudinalModes
     lidded_inertia: float | None
-    checks: Sequence[Check] = field(repr=False)
-    recommendation: Recommendation = field(repr=False)
+    checks: Sequence[Check]
+    recommendation: Recommendation
     warnings: Sequence[str]
+
+    def __repr__(self) -> str:
+        frequencies = ", ".join(f"{mode.computed.frequency:.4g}" for mode in self.modes)
+        return f"TankCoefficients({self.scenario.name}: {frequencies} rad/s)"
 
     def summary(self) -> dict[str, Any]:
         """The answer in plain Python values, with the keys of `slosh tank coefficients --json` but for `files`."""

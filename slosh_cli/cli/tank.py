@@ -80,7 +80,7 @@ def _excite(
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
-    from slosh_cli.application.excitation import Prescription
+    from slosh_cli.application.prescription import Prescription
     from slosh_cli.cli.tank_excite import run_excitation
 
     read = partial(Prescription.read, deceleration, ramp, duration, table, interval, "--{}".format)

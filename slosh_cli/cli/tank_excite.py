@@ -4,8 +4,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from slosh_cli.application.excitation import ExcitationResult, Prescription, excitation_folder
+from slosh_cli.application.excitation import ExcitationResult, excitation_folder, excited
 from slosh_cli.application.keeping import Keeping
+from slosh_cli.application.prescription import Prescription
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.keeping import files_text, told
 from slosh_cli.cli.output import complain, note, say, say_json, show, warn
@@ -33,7 +34,7 @@ def run_excitation(
     folder = excitation_folder(scenario, prescription, output, overrides, note)
     if scenario.tank.liquid.model in _KERNELS:
         announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
-    result = prescription.carry_out(scenario)
+    result = excited(prescription, scenario)
     if result.histories.time.size < 2:
         complain(f"failed: {result.reason}. {_REMEDY}")
         return ExitCode.NO_ANSWER

@@ -45,7 +45,7 @@ class Outcome:
     chart: Chart
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CaseResult:
     """A case that was run; `chart` is None where it broke down."""
 
@@ -53,6 +53,9 @@ class CaseResult:
     rows: tuple[Row, ...]
     chart: Chart | None
     seconds: float
+
+    def __repr__(self) -> str:
+        return f"CaseResult({self.name}: {'passed' if self.passed else 'fell short'}, {len(self.rows)} rows)"
 
     @property
     def name(self) -> str:
