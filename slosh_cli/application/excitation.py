@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.application.plotting import writers
 from slosh_cli.application.prescription import Amount, Prescription
-from slosh_cli.report.record import FORMATS
+from slosh_cli.report import FORMATS
 from slosh_cli.results.validity import Check, plain, warnings_of
 from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
 

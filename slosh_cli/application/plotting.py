@@ -7,11 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from slosh_cli.report.record import FIGURE_NAMES, Record, has_liquid
+from slosh_cli.report import FIGURE_NAMES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from slosh_cli.report.record import Record
     from slosh_cli.validation.case import CaseResult
 
     Figures = dict[str, Callable[[], Figure]]
@@ -61,7 +62,7 @@ def _run_figures(record: Record) -> Figures:
 
         return FIGURES[name](record)
 
-    return {name: partial(draw, name) for name in FIGURE_NAMES if name != "slosh" or has_liquid(record)}
+    return {name: partial(draw, name) for name in FIGURE_NAMES if name != "slosh" or record.liquid_model != "rigid"}
 
 
 def case_figures(result: CaseResult) -> Figures:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
-from slosh_cli.report.record import FIGURE_NAMES, FORMATS
+from slosh_cli.report import FIGURE_NAMES, FORMATS
 from slosh_cli.scenario import Scenario, TankScenario, load_scenario
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from slosh_cli.application.keeping import Keeping, by_kind, default_folder
 from slosh_cli.application.plotting import writers
 from slosh_cli.errors import UsageError
-from slosh_cli.report.record import FORMATS
+from slosh_cli.report import FORMATS
 from slosh_cli.results.files import try_targets
 from slosh_cli.results.tables import write_table
 from slosh_cli.results.validity import Check, plain, warnings_of

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from slosh_cli.application.keeping import Keeping, by_kind, default_folder
 from slosh_cli.application.plotting import case_figures, writers
-from slosh_cli.report.record import FORMATS
+from slosh_cli.report import FORMATS
 from slosh_cli.results.files import try_targets
 from slosh_cli.validation import registry
 from slosh_cli.validation.case import CaseResult

@@ -28,8 +28,8 @@ def plot(
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.stop import FIGURE_FILES
     from slosh_cli.cli.keeping import told
+    from slosh_cli.report import FIGURE_NAMES
     from slosh_cli.report.figures import draw_run
-    from slosh_cli.report.record import FIGURE_NAMES
     from slosh_cli.results.files import try_targets
     from slosh_cli.results.hdf5 import read_history
 

@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from slosh_cli.report import FIGURE_NAMES, FORMATS
 from slosh_cli.report.record import (
-    FIGURE_NAMES,
     Record,
     caption,
     conditions,
@@ -22,7 +22,7 @@ from slosh_cli.report.record import (
     locked_stretches,
     slip_percent,
 )
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
 
 RESOLUTION: Final = 200  # dots per inch

@@ -2,19 +2,13 @@
 
 from collections.abc import Mapping
 from textwrap import shorten
-from typing import Final, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slosh_cli.results.channels import wheel
 from slosh_cli.results.result import PerWheel, Status, Vector
-
-FORMATS: Final = ("png", "svg")
-"""Kinds of files that every figure is written as."""
-
-FIGURE_NAMES: Final = ("contact_forces", "speed_distance", "wheel_speed", "slosh")
-"""Every figure of a run, by the name of its files."""
 
 LOCKED_SPEED = 1e-3
 """Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a figure."""
