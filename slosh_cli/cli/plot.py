@@ -6,21 +6,16 @@ from typing import Annotated
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.options import option
 from slosh_cli.cli.output import say
 
 
 def plot(
-    history_file: Annotated[
-        Path, typer.Argument(metavar="FILE.h5", help="History file of a run.", show_default=False)
-    ],
+    history_file: Annotated[Path, typer.Argument(metavar="FILE.h5", help="History file of a run.", show_default=False)],
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="DIR", help="Folder for the figures. Default: that of FILE.h5.",
-            show_default=False,
-        ),
+        Path | None, option("--output -o", "DIR", "Folder for the figures. Default: that of FILE.h5.")
     ] = None,
-) -> ExitCode:  # fmt: skip
+) -> ExitCode:
     """Draw the figures of a run from its history file.
 
     Each is written as PNG and as SVG.

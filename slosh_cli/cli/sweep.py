@@ -8,82 +8,30 @@ from typing import Annotated, Final
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson, Overrides
+from slosh_cli.cli.options import AsJson, Overrides, option
 from slosh_cli.errors import UsageError
 
 _ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that keep linear algebra to the thread that calls it: the stops share the cores among them already."""
 
-_ScenarioOrStudy = Annotated[
-    Path | None,
-    typer.Argument(
-        metavar="SCENARIO",
-        help="Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper.",
-        show_default=False,
-    ),
-]
-_Speeds = Annotated[
-    str | None,
-    typer.Option(
-        "--v0",
-        metavar="LIST",
-        help="Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary alone, "
-        "the scenario's own.",
-        show_default=False,
-    ),
-]
-_Torques = Annotated[
-    str | None,
-    typer.Option(
-        "--torque",
-        metavar="LIST",
-        help="Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both "
-        "ends in); with --vary alone, the scenario's own.",
-        show_default=False,
-    ),
-]
-_Vary = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--vary",
-        metavar="KEY=LIST",
-        help="_Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
-        "--vary contact.adhesion=dry,wet. May be repeated.",
-        show_default=False,
-    ),
-]
-_Liquids = Annotated[
-    str | None,
-    typer.Option(
-        "--liquid",
-        metavar="LIST",
-        help="Models of the load. Default: the scenario's own (the paper's: modal) and rigid.",
-        show_default=False,
-    ),
-]
-_StudyFolder = Annotated[
-    Path | None,
-    typer.Option(
-        "--output",
-        "-o",
-        metavar="DIR",
-        help="Folder of the study. Default: outputs/, the study's name and what was --set.",
-        show_default=False,
-    ),
-]
-_Jobs = Annotated[
-    int | None,
-    typer.Option("--jobs", metavar="N", min=1, help="Threads. Default: one per core.", show_default=False),
-]
-_ClusterAddress = Annotated[
-    str | None,
-    typer.Option(
-        "--cluster",
-        metavar="ADDRESS",
-        help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs Dask).",
-        show_default=False,
-    ),
-]
+_FILE: Final = "Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
+_ScenarioOrStudy = Annotated[Path | None, typer.Argument(metavar="SCENARIO", help=_FILE, show_default=False)]
+_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary
+alone, the scenario's own."""
+_Speeds = Annotated[str | None, option("--v0", "LIST", _SPEEDS)]
+_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both
+ends in); with --vary alone, the scenario's own."""
+_Torques = Annotated[str | None, option("--torque", "LIST", _TORQUES)]
+_VARY: Final = """Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m',
+--vary contact.adhesion=dry,wet. May be repeated."""
+_Vary = Annotated[list[str] | None, option("--vary", "KEY=LIST", _VARY)]
+_LIQUIDS: Final = "Models of the load. Default: the scenario's own (the paper's: modal) and rigid."
+_Liquids = Annotated[str | None, option("--liquid", "LIST", _LIQUIDS)]
+_FOLDER: Final = "Folder of the study. Default: outputs/, the study's name and what was --set."
+_StudyFolder = Annotated[Path | None, option("--output -o", "DIR", _FOLDER)]
+_Jobs = Annotated[int | None, option("--jobs", "N", "Threads. Default: one per core.", min=1)]
+_CLUSTER: Final = "Compute on the workers of a Dask scheduler, tcp://host:8786 (needs Dask)."
+_ClusterAddress = Annotated[str | None, option("--cluster", "ADDRESS", _CLUSTER)]
 _Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
 _Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
 _DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]

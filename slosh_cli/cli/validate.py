@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson
+from slosh_cli.cli.options import AsJson, option
 from slosh_cli.cli.output import note, say, say_json, show
 
 if TYPE_CHECKING:
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from slosh_cli.validation.case import CaseResult
     from slosh_cli.validation.data_file import CaseData
+
+_FOLDER: Final = "Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs."
 
 
 def validate(
@@ -24,16 +26,7 @@ def validate(
     ] = None,
     as_json: AsJson = False,
     list_only: Annotated[bool, typer.Option("--list", help="Name the cases and what they ask, run none.")] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="DIR",
-            help="Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs.",
-            show_default=False,
-        ),
-    ] = None,
+    output: Annotated[Path | None, option("--output -o", "DIR", _FOLDER)] = None,
 ) -> ExitCode:
     """Check the program against published and exact results.
 
