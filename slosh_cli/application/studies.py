@@ -18,7 +18,7 @@ from slosh_cli.results.result import Status
 from slosh_cli.scenario import Scenario
 from slosh_cli.study.build import grid, paper_wagon
 from slosh_cli.study.claims import applies, verdicts
-from slosh_cli.study.journal import JOURNAL, Journal, remove
+from slosh_cli.study.journal import JOURNAL, Journal
 from slosh_cli.study.key import extends, study_key
 from slosh_cli.study.lock import LOCK, is_held, locked
 from slosh_cli.study.plan import SOLID, Study
@@ -116,7 +116,7 @@ def opened(study: Study, folder: Path, *, fresh: bool = False) -> Iterator[OpenS
         try_targets(folder / HISTORIES, (f"{'0' * 20}.h5",))
     with locked(folder):
         if fresh:
-            remove(folder / JOURNAL)
+            Journal.remove(folder / JOURNAL)
         with Journal(folder / JOURNAL) as journal:
             planned = plan(study, journal, folder)
             journal.note_study(study_key(study))

@@ -1,6 +1,6 @@
-"""The command tree. A new command is one module here, with a function of the module's name, and a word in _COMMANDS.
+"""The command tree. A new command NAME is a word in _COMMANDS and a module NAME here with a function NAME_command.
 
-What has commands of its own is a `typer.Typer` of the module's name.
+What has commands of its own is a `typer.Typer` instead of a function.
 """
 
 from importlib import import_module
@@ -32,7 +32,7 @@ def tree(word: str = "") -> typer.Typer:
     )
     app.callback(invoke_without_command=True)(_slosh)
     for command in (word,) if word in _COMMANDS else _COMMANDS:
-        found = getattr(import_module(f"slosh_cli.cli.{command}"), command)
+        found = getattr(import_module(f"slosh_cli.cli.{command}"), f"{command}_command")
         if isinstance(found, typer.Typer):
             app.add_typer(found, name=command)
         else:

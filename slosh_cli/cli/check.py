@@ -5,18 +5,18 @@ from slosh_cli.cli.options import AsJson, Overrides, ScenarioFile
 from slosh_cli.cli.output import say, say_json, warn
 
 
-def check(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJson = False) -> ExitCode:
+def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJson = False) -> ExitCode:
     """Check a scenario without running it.
 
     Every mistake is named with its line, all of them at once. What is allowed but unlikely, or will lead to overload,
     locked wheels or a liquid outside its model, is warned of.
     """
     from slosh_cli.application.stop import outlook
-    from slosh_cli.cli.reading import read_any_scenario
+    from slosh_cli.cli.reading import read
     from slosh_cli.results.validity import plain, warnings_of
-    from slosh_cli.scenario import Scenario
+    from slosh_cli.scenario import Scenario, load_any_scenario
 
-    scenario = read_any_scenario(scenario_file, overrides)
+    scenario = read(load_any_scenario, scenario_file, overrides)
     kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
     verdicts, advice = outlook(scenario)
     warnings = warnings_of(verdicts)

@@ -14,7 +14,7 @@ _DEFAULT: Final = "tank-wagon"
 _FILE: Final = "File to write; the scenario takes its name. Default: its own name, in the current folder."
 
 
-def init(
+def init_command(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")
     ] = _DEFAULT,

@@ -10,7 +10,7 @@ from slosh_cli.cli.options import option
 from slosh_cli.cli.output import say
 
 
-def plot(
+def plot_command(
     history_file: Annotated[Path, typer.Argument(metavar="FILE.h5", help="History file of a run.", show_default=False)],
     output: Annotated[
         Path | None, option("--output -o", "DIR", "Folder for the figures. Default: that of FILE.h5.")

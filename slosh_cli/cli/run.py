@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario
 
 
-def run(
+def run_command(
     scenario_file: ScenarioFile,
     output: OutputFolder = None,
     overrides: Overrides = None,
@@ -29,11 +29,12 @@ def run(
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.stop import keep_run, run_folder
     from slosh_cli.cli.keeping import told
-    from slosh_cli.cli.reading import read_scenario
+    from slosh_cli.cli.reading import read
     from slosh_cli.cli.summary import show_files, show_run
     from slosh_cli.results.result import Status
+    from slosh_cli.scenario import load_scenario
 
-    scenario = read_scenario(scenario_file, overrides)
+    scenario = read(load_scenario, scenario_file, overrides)
     folder = run_folder(scenario, output, overrides, note)
     result = _simulate(scenario)
     stopped, keeping = result.status is Status.STOPPED, Keeping()

@@ -16,7 +16,7 @@ class _FileKind(StrEnum):
     STUDY = "study"
 
 
-def schema(
+def schema_command(
     kind: Annotated[
         _FileKind,
         typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone) or `study`."),

@@ -37,7 +37,7 @@ _Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed 
 _DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
 
 
-def sweep(
+def sweep_command(
     scenario_file: _ScenarioOrStudy = None,
     speeds: _Speeds = None,
     torques: _Torques = None,

@@ -2,12 +2,13 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.cli.output import say, show
-from slosh_cli.report.study_pages import name_of, text_of, unit_of
+from slosh_cli.cli.output import complain, note, say, show
+from slosh_cli.report.study_pages import name_of, unit_of, value_text
+from slosh_cli.results.result import Status
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 from slosh_cli.study.table import TABLE
@@ -62,7 +63,23 @@ def claim_text(verdicts: Mapping[str, Sequence["Verdict"]]) -> str:
     return "\n".join(lines)
 
 
-def failure_lines(study: Study, rows: Iterable[_Row]) -> list[str]:
+def tell_troubles(study: Study, rows: Callable[[], Iterable[_Row]], counts: Mapping[Status, int]) -> None:
+    """Tell what lies outside the limits of a check, and what ended without an answer, on stderr.
+
+    `counts` says how many stops ended how; only those that failed are complained of.
+    """
+    outside = _verdict_lines(rows())
+    if outside:
+        note("\n".join(outside))
+    written = sum(counts.values())
+    unanswered = written - counts.get(Status.STOPPED, 0)
+    if unanswered:
+        tell = complain if any(status.is_failure for status in counts) else note
+        lines = _failure_lines(study, rows())
+        tell("\n".join([f"{unanswered} of {written} stops ended without an answer:", *lines]))
+
+
+def _failure_lines(study: Study, rows: Iterable[_Row]) -> list[str]:
     """What went wrong, grouped by cause: how often, why, where."""
     groups: dict[tuple[str, str], list[_Row]] = {}
     for row in rows:
@@ -79,7 +96,7 @@ def failure_lines(study: Study, rows: Iterable[_Row]) -> list[str]:
     return lines
 
 
-def verdict_lines(rows: Iterable[_Row]) -> list[str]:
+def _verdict_lines(rows: Iterable[_Row]) -> list[str]:
     """How many stops each check warns of, most first; the warnings themselves are in the table."""
     counts: Counter[str] = Counter()
     stops = 0
@@ -91,7 +108,7 @@ def verdict_lines(rows: Iterable[_Row]) -> list[str]:
 
 
 def _where(study: Study, row: _Row) -> str:
-    return ", ".join(text_of(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
+    return ", ".join(value_text(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
 
 
 def _lines(study: Study) -> int:
@@ -120,10 +137,10 @@ def _table(study: Study, rows: Sequence[_Row]) -> "Table":
     for name, unit in heads:
         table.add_column(f"{name}\n{unit}", justify="right", no_wrap=True)
     best = _best(rows, _curve_of(study))
-    for _, group in groupby(rows, key=lambda row: tuple(text_of(axis, row) for axis in axes)):
+    for _, group in groupby(rows, key=lambda row: tuple(value_text(axis, row) for axis in axes)):
         point = {str(row["liquid"]): row for row in group}
         first = next(iter(point.values()))
-        cells = [text_of(axis, first).removesuffix(unit_of(axis)).strip() for axis in axes]
+        cells = [value_text(axis, first).removesuffix(unit_of(axis)).strip() for axis in axes]
         cells += [_distance(point.get(model), best) for model in models]
         cells += [_ratio(point.get(model)) for model in liquids if SOLID in models]
         table.add_row(*cells)
@@ -167,7 +184,7 @@ def _best(rows: Sequence[_Row], axes: Sequence[Axis]) -> list[_Row]:
     for row in rows:
         if row.get("braking_distance_m") is None:
             continue
-        key = tuple(text_of(axis, row) for axis in axes)
+        key = tuple(value_text(axis, row) for axis in axes)
         if key not in curves or row["braking_distance_m"] < curves[key]["braking_distance_m"]:
             curves[key] = row
     return list(curves.values())
@@ -180,6 +197,6 @@ def _best_lines(study: Study, rows: Sequence[_Row]) -> list[str]:
     axes = [axis for axis in _curve_of(study) if len(axis.values) > 1]
     lines = ["most effective torque:"]
     for row in _best(rows, _curve_of(study)):
-        where = ", ".join(text_of(axis, row) for axis in axes)
+        where = ", ".join(value_text(axis, row) for axis in axes)
         lines.append(f"  {where}: {row['torque_kN_m']:g} kN m, {row['braking_distance_m']:.2f} m")
     return lines

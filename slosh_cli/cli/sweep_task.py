@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.keeping import told
-from slosh_cli.cli.output import complain, note, say, say_json, warn
+from slosh_cli.cli.output import note, say, say_json, warn
 
 if TYPE_CHECKING:
     from slosh_cli.application.studies import OpenStudy
@@ -108,7 +108,7 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
 
 def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
     """Write the table and the figures, and tell what came out."""
-    from slosh_cli.cli.sweep_output import claim_text, show_study
+    from slosh_cli.cli.sweep_output import claim_text, show_study, tell_troubles
     from slosh_cli.results.result import Status
 
     keeping = Keeping()
@@ -135,7 +135,7 @@ def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
         _say_files(table, figures)
         reused = f"{work.planned.reused} of them from the journal"
         say(f"{written} stops in {time.perf_counter() - task.began:.1f} s, {reused}")
-    _tell_troubles(task, work, written - counts[Status.STOPPED], written, failed=bool(failed))
+    tell_troubles(task.study, work.rows, counts)
     return told(keeping, ExitCode.NO_ANSWER if failed else ExitCode.DONE)
 
 
@@ -145,19 +145,6 @@ def _some_of_them(needed: int, drawn: int) -> None:
 
 def _say_files(table: str | None, figures: Sequence[str]) -> None:
     say("\n".join(["", *([f"  table    {table}"] if table else []), *(f"  figure   {figure}" for figure in figures)]))
-
-
-def _tell_troubles(task: Task, work: "OpenStudy", unanswered: int, written: int, *, failed: bool) -> None:
-    """What lies outside the limits of a check, and what ended without an answer, on stderr."""
-    from slosh_cli.cli.sweep_output import failure_lines, verdict_lines
-
-    outside = verdict_lines(work.rows())
-    if outside:
-        note("\n".join(outside))
-    if unanswered:
-        lines = failure_lines(task.study, work.rows())
-        tell = complain if failed else note
-        tell("\n".join([f"{unanswered} of {written} stops ended without an answer:", *lines]))
 
 
 def _say_answer(

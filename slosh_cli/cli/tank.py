@@ -31,10 +31,10 @@ _LEVEL: Final = "Deceleration to reach, such as '0.2 g'."
 _RAMP: Final = "Reach it linearly within this time, then hold it. Default: at once."
 _COURSE: Final = "Deceleration over time instead: columns time_s and deceleration_m_s2, linear in between."
 
-tank = typer.Typer(help=_HELP, rich_markup_mode=None, no_args_is_help=True)
+tank_command = typer.Typer(help=_HELP, rich_markup_mode=None, no_args_is_help=True)
 
 
-@tank.command("coefficients")
+@tank_command.command("coefficients")
 def _coefficients(
     scenario_file: ScenarioFile,
     modes: _Modes = None,
@@ -46,11 +46,12 @@ def _coefficients(
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.tank import COEFFICIENTS_TABLE, coefficients
     from slosh_cli.cli.keeping import files_text, told
-    from slosh_cli.cli.reading import read_any_scenario
+    from slosh_cli.cli.reading import read
     from slosh_cli.cli.tank_output import show_coefficients
     from slosh_cli.results.files import try_targets
+    from slosh_cli.scenario import load_any_scenario
 
-    scenario = read_any_scenario(scenario_file, overrides)
+    scenario = read(load_any_scenario, scenario_file, overrides)
     if output is not None:
         try_targets(output, (COEFFICIENTS_TABLE,))
     found, keeping = coefficients(scenario, modes), Keeping()
@@ -66,7 +67,7 @@ def _coefficients(
     return told(keeping)
 
 
-@tank.command("excite")
+@tank_command.command("excite")
 def _excite(
     scenario_file: ScenarioFile,
     deceleration: Annotated[str | None, option("--deceleration", "A", _LEVEL)] = None,
@@ -85,9 +86,10 @@ def _excite(
     from slosh_cli.application.excitation import excitation_folder, excited
     from slosh_cli.application.prescription import Prescription
     from slosh_cli.cli.progress import announce_compilation
-    from slosh_cli.cli.reading import read_any_scenario
+    from slosh_cli.cli.reading import read
+    from slosh_cli.scenario import load_any_scenario
 
-    scenario = read_any_scenario(scenario_file, overrides)
+    scenario = read(load_any_scenario, scenario_file, overrides)
     prescription = Prescription.read(deceleration, ramp, duration, table, interval, "--{}".format)
     folder = excitation_folder(scenario, prescription, output, overrides, note)
     if scenario.tank.liquid.model in _KERNELS:
@@ -120,7 +122,7 @@ def _tell(result: "ExcitationResult", folder: Path, *, as_json: bool) -> ExitCod
     return told(keeping, ExitCode.NO_ANSWER if result.reason else ExitCode.DONE)
 
 
-@tank.command("chart")
+@tank_command.command("chart")
 def _chart(
     scenario_file: ScenarioFile,
     fills: Annotated[
@@ -136,9 +138,10 @@ def _chart(
     from slosh_cli.application.tank import chart_fills, chart_folder
     from slosh_cli.cli.keeping import files_text, told
     from slosh_cli.cli.progress import counting
-    from slosh_cli.cli.reading import read_any_scenario
+    from slosh_cli.cli.reading import read
+    from slosh_cli.scenario import load_any_scenario
 
-    scenario = read_any_scenario(scenario_file, overrides)
+    scenario = read(load_any_scenario, scenario_file, overrides)
     levels = _read_fills(fills)
     folder = chart_folder(scenario, output, [*(overrides or ()), *([f"fills={fills}"] if fills != _ALL else [])])
     with counting("fillings") as progress:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _FOLDER: Final = "Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs."
 
 
-def validate(
+def validate_command(
     names: Annotated[
         list[str] | None,
         typer.Argument(metavar="[NAME]...", help="Cases to run; all without a name.", show_default=False),
@@ -47,14 +47,13 @@ def validate(
 def _carry_out(names: Sequence[str], missing: "Sequence[CaseData]", folder: Path, *, as_json: bool) -> ExitCode:
     """Run the cases, write report and figures, tell what came out."""
     from slosh_cli.application.keeping import Keeping
-    from slosh_cli.application.validation import keep_validation
-    from slosh_cli.application.validation import validate as validated
+    from slosh_cli.application.validation import keep_validation, validate
     from slosh_cli.cli.keeping import told
     from slosh_cli.cli.progress import announce_compilation, counting
 
     announce_compilation()
     with counting("cases") as progress:
-        results = validated(names, progress)
+        results = validate(names, progress)
     if not as_json:
         _show(results, missing, detailed=bool(names))
     keeping = Keeping()

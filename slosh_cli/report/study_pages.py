@@ -82,7 +82,7 @@ def _column(axis: Axis) -> str:
     return _COLUMNS.get(axis.key) or column_of(axis)
 
 
-def text_of(axis: Axis, row: Mapping[str, Any]) -> str:
+def value_text(axis: Axis, row: Mapping[str, Any]) -> str:
     """The value of an axis in a row, with its unit."""
     value = row[_column(axis)]
     return f"{value:g} {unit_of(axis)}".rstrip() if isinstance(value, float) else str(value)
@@ -99,7 +99,7 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
     found: dict[str, dict[str, StopsPanel]] = {}
     ticks: dict[Any, int] = {}
     for row in rows:
-        page = ", ".join(f"{name_of(axis)} {text_of(axis, row)}" for axis in apart)
+        page = ", ".join(f"{name_of(axis)} {value_text(axis, row)}" for axis in apart)
         title = _panel_title(beside, row)
         panel = found.setdefault(page, {}).setdefault(title, StopsPanel(title))
         panel.curves.setdefault(str(row["liquid"]), []).append(_mark(along, row, ticks))
@@ -126,7 +126,7 @@ def _shared_out(panels: Sequence[_T], most: int) -> Iterator[Sequence[_T]]:
 def _panel_title(beside: Axis | None, row: Mapping[str, Any]) -> str:
     if beside is None:
         return f"{row['v0_km_h']:g} km/h"
-    return text_of(beside, row) if beside.key in _UNITS else f"{name_of(beside)} {text_of(beside, row)}"
+    return value_text(beside, row) if beside.key in _UNITS else f"{name_of(beside)} {value_text(beside, row)}"
 
 
 def _conditions(study: Study, page: str) -> str:

@@ -88,7 +88,7 @@ def expanded(spec: str, bare_unit: str = "") -> tuple[str, ...]:
     return tuple(dict.fromkeys(value for group in reversed(groups) for value in group))
 
 
-def listed(values: Sequence[Any]) -> tuple[str, ...]:
+def _listed(values: Sequence[Any]) -> tuple[str, ...]:
     """The values of a list in a study file, as texts. Raises ValueRefused where a value has no text."""
     if not values:
         raise ValueRefused("must be a list of at least one value", "an empty list", "write the values to take")
@@ -100,8 +100,8 @@ def axis_values(spec: Any) -> tuple[str, ...]:
     if isinstance(spec, str):
         return expanded(spec)
     entries = spec if isinstance(spec, list | tuple) else [spec]
-    groups = [expanded(entry) if isinstance(entry, str) else listed([entry]) for entry in entries]
-    return listed([text for group in groups for text in group])
+    groups = [expanded(entry) if isinstance(entry, str) else _listed([entry]) for entry in entries]
+    return _listed([text for group in groups for text in group])
 
 
 def _as_text(value: Any) -> str:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.errors import SloshError, UsageError
 from slosh_cli.study.key import RESULT_VERSION
-from slosh_cli.study.outcome import Outcome, failed, solve
+from slosh_cli.study.outcome import FinishedStop, failed, solve
 from slosh_cli.study.plan import Stop
 from slosh_cli.version import __version__, install_command
 
@@ -51,7 +51,7 @@ class ClusterError(SloshError):
     code = "cluster"
 
 
-def _solve_batch(batch: _Batch, needed: str) -> list[Outcome]:
+def _solve_batch(batch: _Batch, needed: str) -> list[FinishedStop]:
     """What a worker does. Raises ClusterError where its version of slosh is not the `needed` one."""
     if needed != _this_version():
         raise ClusterError(f"a worker has {_this_version()}, but the study needs {needed}; install the same there")
@@ -112,7 +112,7 @@ class Cluster:
         """Threads of all workers there are now, at least one."""
         return max(self._all_threads(), 1)
 
-    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[FinishedStop], None, None]:
         """Outcomes batch by batch, in no particular order. `cancel` gives up what is on its way and ends the iteration.
 
         The batch of a worker that dies goes to another one; a stop that takes worker after worker with it ends as
@@ -175,7 +175,7 @@ class Cluster:
                 raise self._lost() from None
             return None
 
-    def _received(self, future: _Future) -> Iterator[list[Outcome]]:
+    def _received(self, future: _Future) -> Iterator[list[FinishedStop]]:
         """The outcomes of a batch, or the batch sent again stop by stop where it killed its workers."""
         batch = self._batches.pop(future, ())
         if future.status in ("lost", "pending"):  # its worker died with it: the scheduler has it computed again
@@ -186,7 +186,7 @@ class Cluster:
         error: Any = future.exception() if future.status == "error" else None
         if error is None:
             with self._connection():  # the outcomes come from the worker only now, by way of the scheduler
-                outcomes: list[Outcome] = future.result()
+                outcomes: list[FinishedStop] = future.result()
             self._seconds.extend(max(outcome.seconds, 1e-3) for outcome in outcomes)
             yield outcomes
         elif not isinstance(error, self._dask.KilledWorker):

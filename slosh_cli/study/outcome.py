@@ -22,7 +22,7 @@ _NOT_THE_LIQUID = ("wheels lifted off", "pitch beyond small angles")
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FinishedStop:
     """A finished stop.
 
     answer: column (with unit) -> value, always with speed, torque, liquid, status and reason.
@@ -43,7 +43,7 @@ class Outcome:
         return str(self.answer["status"])
 
 
-def solve(stop: Stop, cancel: Cancel | None = None) -> Outcome:
+def solve(stop: Stop, cancel: Cancel | None = None) -> FinishedStop:
     """Compute a stop; a failure is an outcome too. Raises Cancelled when `cancel` is set before the end."""
     from slosh_cli.results.simulate import simulate
     from slosh_cli.solver.run import Cancelled
@@ -59,12 +59,12 @@ def solve(stop: Stop, cancel: Cancel | None = None) -> Outcome:
         reason = f"the program failed: {type(error).__name__}: {error}"
         return failed(stop, reason, final=False, seconds=time.perf_counter() - began)
     seconds = time.perf_counter() - began
-    return Outcome(stop.index, stop.key, _answer(result), True, seconds, result if stop.history else None)
+    return FinishedStop(stop.index, stop.key, _answer(result), True, seconds, result if stop.history else None)
 
 
-def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> Outcome:
+def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> FinishedStop:
     """The outcome of a stop that ended without a result."""
-    return Outcome(stop.index, stop.key, without_result(conditions(stop.scenario), reason), final, seconds)
+    return FinishedStop(stop.index, stop.key, without_result(conditions(stop.scenario), reason), final, seconds)
 
 
 def without_result(conditions: dict[str, Any], reason: str) -> dict[str, Any]:

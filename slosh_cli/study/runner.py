@@ -13,7 +13,7 @@ from slosh_cli.errors import ScenarioError
 from slosh_cli.results.files import FileError
 from slosh_cli.study.journal import Journal
 from slosh_cli.study.key import history_key
-from slosh_cli.study.outcome import Outcome, without_result
+from slosh_cli.study.outcome import FinishedStop, without_result
 from slosh_cli.study.plan import Stop, Study
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Workers(Protocol):
         """How many stops are computed at a time."""
         ...
 
-    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[FinishedStop], None, None]:
         """Outcomes of the `total` stops as they come, in any order, until all are done or `cancel` is set."""
         ...
 
@@ -131,7 +131,7 @@ def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, c
     return done
 
 
-def _write_history(outcome: Outcome, plan: Plan) -> None:
+def _write_history(outcome: FinishedStop, plan: Plan) -> None:
     if outcome.result is not None:
         from slosh_cli.results.hdf5 import write_history
 

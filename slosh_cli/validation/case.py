@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from slosh_cli.validation.chart import Chart
-from slosh_cli.validation.data_file import CaseData, Kind
+from slosh_cli.validation.data_file import CaseData, Deviation
 
 _Value = float | str | None
 
@@ -87,7 +87,7 @@ class Findings:
         deviation: float | None = None
         if value is not None and math.isfinite(value):
             deviation = abs(value - reference)
-            if allowed.kind is Kind.RELATIVE:
+            if allowed.kind is Deviation.RELATIVE:
                 deviation /= abs(reference)
         elif value is not None:
             value = None

@@ -3,7 +3,7 @@
 import pytest
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.study.axis import Axis, expanded, listed, measured
+from slosh_cli.study.axis import Axis, _listed, expanded, measured
 
 
 @pytest.mark.parametrize(
@@ -86,11 +86,11 @@ def test_such_a_range_keeps_its_unit() -> None:
 
 
 def test_lists_of_a_file_become_texts() -> None:
-    assert listed([0.5, 3, "10 m", {"mu0": 0.3, "B": "0.6 s/m"}, [1, 2.5]]) == (
+    assert _listed([0.5, 3, "10 m", {"mu0": 0.3, "B": "0.6 s/m"}, [1, 2.5]]) == (
         "0.5", "3", "10 m", "{mu0: 0.3, B: 0.6 s/m}", "[1, 2.5]",
     )  # fmt: skip
     with pytest.raises(ValueRefused, match="at least one value"):
-        listed([])
+        _listed([])
 
 
 def test_numbers_and_units_are_told_from_words() -> None:
