@@ -13,20 +13,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from slosh_cli.report.record import (
-    FIGURE_NAMES,
-    Record,
-    caption,
-    conditions,
-    has_liquid,
-    locked_stretches,
-    slip_percent,
-)
+from slosh_cli.report.record import FIGURE_NAMES, caption, conditions, locked_stretches
 from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.result import Record
 
 RESOLUTION: Final = 200  # dots per inch
-CAPTION_WIDTH: Final = 126  # characters
+_CAPTION_WIDTH: Final = 126  # characters
 
 WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
     1: {"color": "#08306b", "linestyle": "-", "label": "wheel 1"},
@@ -34,7 +27,7 @@ WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
     3: {"color": "#8c2d04", "linestyle": (0, (6, 2, 1, 2)), "label": "wheel 3"},
     4: {"color": "#fd8d3c", "linestyle": (0, (1.5, 1.2)), "label": "wheel 4"},
 }
-ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
+_ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
 FRONT: Final[dict[str, Any]] = {"color": "#08306b", "linestyle": "-"}
 REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
 ALARM: Final = "#a50f15"
@@ -51,16 +44,16 @@ def draw_run(
         return [
             file
             for name, draw in FIGURES.items()
-            if name in names and (name != "slosh" or has_liquid(record))
+            if name in names and (name != "slosh" or record.has_liquid)
             for file in save(draw(record), folder, name, formats)
         ]
 
 
-def contact_forces(record: Record) -> Figure:
+def _contact_forces(record: Record) -> Figure:
     """Normal forces of the four wheels against time (Figure 2 of the paper)."""
     figure, (axes,) = _panels(record, "Wheel loads during braking", [1.0], height=5.6)
     for i in WHEELS:
-        style = WHEEL_STYLES[i] | ({"label": ENDS[i]} if i in ENDS else {})
+        style = WHEEL_STYLES[i] | ({"label": _ENDS[i]} if i in _ENDS else {})
         axes.plot(record.time, record.channels[wheel(i, "normal_force")] / 1e3, **style)
     for load in sorted({round(load / 1e3, 1) for load in record.static_wheel_load_N}):
         at_rest = axes.axhline(load, color=MUTED, linewidth=1.0, linestyle=":", zorder=1)
@@ -71,7 +64,7 @@ def contact_forces(record: Record) -> Figure:
     return figure
 
 
-def speed_distance(record: Record) -> Figure:
+def _speed_distance(record: Record) -> Figure:
     """Speed, acceleration of the car body and distance against time."""
     figure, (speed, acceleration, distance) = _panels(record, "Speed and distance", [1.25, 1.0, 1.0], height=7.4)
     speed.plot(record.time, record.channels["speed"] * 3.6, color=INK)
@@ -94,7 +87,7 @@ def speed_distance(record: Record) -> Figure:
     return figure
 
 
-def wheel_speed(record: Record) -> Figure:
+def _wheel_speed(record: Record) -> Figure:
     """Circumferential speed of the wheels against the train's, their slip, and where they are locked."""
     figure, (speed, slip, locked) = _panels(record, "Wheel speed and slip", [1.5, 1.0, 0.7], height=7.8)
     speed.plot(
@@ -103,7 +96,7 @@ def wheel_speed(record: Record) -> Figure:
     )  # fmt: skip
     for i in WHEELS:
         speed.plot(record.time, record.channels[wheel(i, "speed")] * 3.6, **WHEEL_STYLES[i])
-        slip.plot(record.time, slip_percent(record, i), **WHEEL_STYLES[i])
+        slip.plot(record.time, 100.0 * record.channels[wheel(i, "creepage")], **WHEEL_STYLES[i])
     speed.set_ylabel("circumferential\nspeed / km/h")
     speed.set_ylim(bottom=0.0)
     slip.set_ylim(5e-3, 200.0)
@@ -117,7 +110,7 @@ def wheel_speed(record: Record) -> Figure:
     return figure
 
 
-def slosh(record: Record) -> Figure:
+def _slosh(record: Record) -> Figure:
     """Rise of the surface at both ends below the roof, amplitudes of the modes, force of the liquid."""
     amplitudes = _amplitudes(record)
     shares = [1.5, 1.0, 1.0] if amplitudes else [1.5, 1.0]
@@ -139,17 +132,17 @@ def slosh(record: Record) -> Figure:
 
 
 FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
-    "contact_forces": contact_forces,
-    "speed_distance": speed_distance,
-    "wheel_speed": wheel_speed,
-    "slosh": slosh,
+    "contact_forces": _contact_forces,
+    "speed_distance": _speed_distance,
+    "wheel_speed": _wheel_speed,
+    "slosh": _slosh,
 }
 """Every figure of a run, by the name of its files."""
 
 
 def _panels(record: Record, title: str, shares: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
-    note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, CAPTION_WIDTH))
+    note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, _CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
     extra = 0.195 * lines + 0.05 * bool(lines)
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)

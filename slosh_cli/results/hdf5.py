@@ -1,12 +1,10 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
-import json
 import platform
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -18,94 +16,16 @@ import numpy as np
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import TIME, Channel, channel, is_channel
 from slosh_cli.results.files import FileError, replacing
-from slosh_cli.results.result import PerWheel, Result, Status, Vector, frame
+from slosh_cli.results.result import Result, Vector
 from slosh_cli.results.steady_file import SteadyFile
-from slosh_cli.results.stored import NEEDED, faults_of_attributes, faults_of_columns, faults_of_shape
-from slosh_cli.results.validity import plain
+from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from slosh_cli.scenario import Scenario, TankScenario
 
-FORMAT_VERSION: Final = 1
-SCENARIO: Final = "scenario"
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class History:
-    """A run read back from its file; time, channels and the named values are those of `Result`.
-
-    attributes: every root attribute of the file, as plain Python values and float64 arrays.
-    scenario_text: the scenario as resolved YAML.
-    """
-
-    time: Vector = field(repr=False)
-    channels: Mapping[str, Vector] = field(repr=False)
-    attributes: Mapping[str, Any]
-    scenario_text: str = field(repr=False)
-
-    @property
-    def name(self) -> str:
-        """Name of the scenario."""
-        return str(self.attributes["name"])
-
-    @property
-    def status(self) -> Status:
-        """How the run ended."""
-        return Status(self.attributes["status"])
-
-    @property
-    def reason(self) -> str:
-        """Why the run did not stop; empty when it did."""
-        return str(self.attributes["reason"])
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the run warned of."""
-        return tuple(str(self.attributes["warnings"]).splitlines())
-
-    @property
-    def initial_speed_m_s(self) -> float:
-        """V0, the speed at t = 0, in m/s."""
-        return float(self.attributes["initial_speed_m_s"])
-
-    @property
-    def torque_N_m(self) -> float:  # noqa: N802
-        """Brake torque per wheel in N m."""
-        return float(self.attributes["torque_N_m"])
-
-    @property
-    def onset_s(self) -> float:
-        """Time at which the brake sets in, in s."""
-        return float(self.attributes["onset_s"])
-
-    @property
-    def liquid_model(self) -> str:
-        """Model of the load: "rigid", "modal", ..."""
-        return str(self.attributes["liquid_model"])
-
-    @property
-    def surface_limit_m(self) -> float:
-        """Room above the still surface in m; NaN when the run did not state it."""
-        return float(self.attributes["surface_limit_m"])
-
-    @property
-    def braking_distance_m(self) -> float | None:
-        """Distance from the onset to the stop speed in m; None when the wagon did not stop."""
-        distance = float(self.attributes["braking_distance_m"])
-        return None if np.isnan(distance) else distance
-
-    @property
-    def static_wheel_load_N(self) -> PerWheel:  # noqa: N802
-        """Wheel loads of the wagon at rest in N."""
-        first, second, third, fourth = (float(load) for load in self.attributes["static_wheel_load_N"])
-        return first, second, third, fourth
-
-    def to_frame(self) -> "pd.DataFrame":
-        """The history as a DataFrame: index `time` in s, one column per channel, all in SI units."""
-        return frame(self.time, self.channels)
+_FORMAT: Final = 1
+_SCENARIO: Final = "scenario"
 
 
 def write_history(result: Result, path: Path) -> None:
@@ -120,7 +40,7 @@ def write_history(result: Result, path: Path) -> None:
         time.make_scale(TIME.name)
         for name, values in result.channels.items():
             _write_channel(file, channel(name), values).dims[0].attach_scale(time)
-        file.create_dataset(SCENARIO, data=scenario_to_yaml(result.scenario), dtype=h5py.string_dtype())
+        file.create_dataset(_SCENARIO, data=scenario_to_yaml(result.scenario), dtype=h5py.string_dtype())
         for key, value in _attributes(result).items():
             file.attrs[key] = value
 
@@ -143,8 +63,8 @@ def write_excitation(
         axis.make_scale(TIME.name)
         for info, values in channels.items():
             _write_channel(file, info, values).dims[0].attach_scale(axis)
-        file.create_dataset(SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
-        for key, value in {"excitation_format_version": FORMAT_VERSION, **_circumstances(), **facts}.items():
+        file.create_dataset(_SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
+        for key, value in {"excitation_format_version": _FORMAT, **_circumstances(), **facts}.items():
             file.attrs[key] = value
 
 
@@ -174,9 +94,9 @@ def _columns(path: Path, file: h5py.File) -> dict[str, Vector]:
 
 def _text(path: Path, file: h5py.File) -> str:
     """The scenario of the run as resolved YAML."""
-    text = file[SCENARIO][()] if isinstance(file.get(SCENARIO), h5py.Dataset) else None
+    text = file[_SCENARIO][()] if isinstance(file.get(_SCENARIO), h5py.Dataset) else None
     if not isinstance(text, bytes):
-        _refuse(path, [f"it lacks the text {SCENARIO}"])
+        _refuse(path, [f"it lacks the text {_SCENARIO}"])
     return str(text, "utf-8") if isinstance(text, bytes) else ""
 
 
@@ -208,7 +128,7 @@ def is_of(path: Path, scenario: "Scenario | TankScenario", settings: str = "") -
 
     try:
         with h5py.File(path, "r") as file:
-            text = file[SCENARIO][()].decode("utf-8")
+            text = file[_SCENARIO][()].decode("utf-8")
             found = str(file.attrs.get("settings", ""))
     except Exception:  # whatever it is, it is no history of ours
         return False
@@ -240,31 +160,19 @@ def _circumstances() -> dict[str, Any]:
 
 
 def _attributes(result: Result) -> dict[str, Any]:
-    """Root attributes: circumstances, summary, ledger. None becomes NaN, several warnings become lines."""
-    circumstances = {"format_version": FORMAT_VERSION, **_circumstances()}
-    summary = result.summary() | {
-        "reason": result.reason,
-        "warnings": "\n".join(" ".join(warning.split()) for warning in result.warnings),
-        "checks": json.dumps(plain(result.checks)),
-        "recommendation": result.recommendation.sentence if result.recommendation else "",
-        "onset_s": result.onset_s,
-        "static_wheel_load_N": list(result.static_wheel_load_N),
-        "mean_total_wheel_load_N": result.mean_total_wheel_load_N,
-        "weight_N": result.weight_N,
-    }
+    """Root attributes: circumstances, answers, ledger, work."""
     ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
-    every = circumstances | summary | ledger | work
-    return {key: np.nan if value is None else value for key, value in every.items()}
+    return {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
 
 
 def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
     found = attributes.get("format_version")
     if attributes.get("program") != "slosh" or found is None:
         raise FileError(f"{path} is an HDF5 file, but not the history of a slosh run", where=str(path))
-    if found != FORMAT_VERSION:
+    if found != _FORMAT:
         raise FileError(
-            f"{path} has history format {found}, but this version of slosh reads format {FORMAT_VERSION}; "
+            f"{path} has history format {found}, but this version of slosh reads format {_FORMAT}; "
             f"it was written by slosh {attributes.get('program_version', '?')}",
             where=str(path),
         )

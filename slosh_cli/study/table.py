@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
 from typing import Any, Final
 
-from slosh_cli.results.channels import WHEELS
+from slosh_cli.results.answers import Place, Shown
+from slosh_cli.results.result import Record
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
@@ -15,15 +16,9 @@ TABLE: Final = "braking_distance.csv"
 
 Row = dict[str, Any]
 
-_HEAD: Final = ("v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status")
-_PER_WHEEL: Final = ("min_wheel_load_{}_N", "max_wheel_load_{}_N", "static_wheel_load_{}_N", "locked_time_{}_s")
-_TAIL: Final = (
-    "ratio_to_solid", "liquid_in_range", "max_surface_m", "surface_limit_m",
-    *(column.format(i) for column in _PER_WHEEL for i in WHEELS),
-    "max_wheel_unloading", "mean_total_wheel_load_N", "weight_N", "energy_residual", "steps", "rejected_steps",
-    "in_model_range",
-)  # fmt: skip
-_END: Final = ("not_within", "reason", "warnings")
+_RATIO: Final = "ratio_to_solid"
+_PLACES: Final = ((Place.NAME, Place.STATUS), (Place.RANGE, Place.RUN), (Place.WORDS, Place.WORDS))
+"""The head of the table, what the stops came to, and the words at its end."""
 _OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
 
 
@@ -35,9 +30,10 @@ def column_of(axis: Axis) -> str:
 def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
     """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
     varied = [column_of(axis) for axis in own_axes(study)]
-    known = [*_HEAD, *varied, *_TAIL]
+    head, answers, words = (Record.columns(Shown.STUDY, first, last) for first, last in _PLACES)
+    known = [*head, *varied, _RATIO, *answers]
     others = dict.fromkeys(name for row in rows for name in row)
-    end = [*_END, *(["history"] if study.histories else [])]
+    end = [*words, *(["history"] if study.histories else [])]
     return [*known, *(name for name in others if name not in known and name not in end), *end]
 
 
@@ -56,7 +52,7 @@ def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Ite
         known = [_row(study, index, given) for index, given in found if given is not None]
         solid = next((row for row in known if row["liquid"] == SOLID), None)
         for row in known:
-            row["ratio_to_solid"] = _ratio(row, solid)
+            row[_RATIO] = _ratio(row, solid)
             yield row
 
 
