@@ -31,8 +31,8 @@ def plot(
 
     Each is written as PNG and as SVG.
     """
+    from slosh_cli.report import FIGURE_NAMES, FORMATS
     from slosh_cli.report.figures import draw_run
-    from slosh_cli.report.record import FIGURE_NAMES, FORMATS
     from slosh_cli.results.files import try_targets
     from slosh_cli.results.hdf5 import read_history
 

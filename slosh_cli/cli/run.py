@@ -49,7 +49,7 @@ def run(
     stopped, keeping = result.status is Status.STOPPED, Keeping()
     if not as_json:
         show_run(result)
-    files = write_run(result, folder, keeping, figures=not no_figures)
+    files = _write_run(result, folder, keeping, figures=not no_figures)
     if as_json:
         answer = result.summary()
         say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
@@ -62,12 +62,12 @@ def run(
     return keeping.told(ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
 
 
-def write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: bool) -> dict[str, Any]:
+def _write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: bool) -> dict[str, Any]:
     """Write history and summary of a run into `folder`, then its figures; returns where those lie that could be.
 
     What an earlier run left in `folder` goes.
     """
-    from slosh_cli.report.record import FIGURE_NAMES
+    from slosh_cli.report import FIGURE_NAMES
     from slosh_cli.results.hdf5 import write_history
     from slosh_cli.results.tables import write_summary
 
@@ -84,7 +84,7 @@ def write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: bool
 
 def _files() -> list[str]:
     """Names of all files that a run may write."""
-    from slosh_cli.report.record import FIGURE_NAMES, FORMATS
+    from slosh_cli.report import FIGURE_NAMES, FORMATS
 
     return [HISTORY, SUMMARY, *(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)]
 

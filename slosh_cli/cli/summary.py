@@ -1,7 +1,7 @@
 """The terminal summary of a run."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -36,15 +36,11 @@ def _facts(result: Result) -> "Table":
 
     table = Table.grid(padding=(0, 2))
     table.title, table.title_justify, table.title_style = _title(result), "left", "bold"
-    for quantity, value in _fact_rows(result):
-        table.add_row(quantity, value)
+    for one, line in _lines(per_wheel=False):
+        text = _WORDS[one.name](result, line) if one.name in _WORDS else _text(getattr(result, one.name), line)
+        if text:
+            table.add_row(line.label, text)
     return table
-
-
-def _fact_rows(result: Result) -> list[tuple[str, str]]:
-    """Quantity and value of everything that holds for the run as a whole."""
-    texts = ((line.label, _WORDS.get(one.name, _plain)(result, one, line)) for one, line in _lines(per_wheel=False))
-    return [(label, text) for label, text in texts if text]
 
 
 def _lines(*, per_wheel: bool) -> list[tuple[Answer, Line]]:
@@ -53,29 +49,26 @@ def _lines(*, per_wheel: bool) -> list[tuple[Answer, Line]]:
     return sorted(found, key=lambda pair: pair[1].at)
 
 
-def _plain(result: Result, one: Answer, line: Line) -> str:
-    value = getattr(result, one.name)
-    return _number(value, line) if one.unit else str(value)
-
-
-def _number(value: float | None, line: Line) -> str:
+def _text(value: Any, line: Line) -> str:
+    if not line.form:
+        return str(value)
     if value is None or not math.isfinite(value):
         return "-"
     return f"{value / line.per:{line.form}} {line.unit}".rstrip()
 
 
-def _surface(result: Result, _: Answer, line: Line) -> str:
-    room = f"(room: {_number(result.surface_limit_m, line)})"
-    return f"{_number(result.max_surface_m, line)} {room}" if result.has_liquid else ""
+def _surface(result: Result, line: Line) -> str:
+    room = f"(room: {_text(result.surface_limit_m, line)})"
+    return f"{_text(result.max_surface_m, line)} {room}" if result.has_liquid else ""
 
 
-def _range(result: Result, *_: object) -> str:
+def _range(result: Result, _: Line) -> str:
     """Yes, or the checks that say no."""
     outside = [check.name for check in result.checks if check.kind == "model" and not check.within]
     return f"no: {', '.join(outside)}" if outside else "yes"
 
 
-def _suiting(result: Result, *_: object) -> str:
+def _suiting(result: Result, _: Line) -> str:
     """The recommended model, with the expected errors of the force on the tank where it is another one."""
     advice = result.recommendation
     if advice is None:
@@ -85,15 +78,13 @@ def _suiting(result: Result, *_: object) -> str:
     return f"{advice.model} (expected error of the force {advice.errors} of mass times deceleration)"
 
 
-_WORDS: Final[Mapping[str, Callable[[Result, Answer, Line], str]]] = {
+_WORDS: Final[Mapping[str, Callable[[Result, Line], str]]] = {
     "max_surface_m": _surface,
     "in_model_range": _range,
     "recommendation": _suiting,
-    "mean_total_wheel_load_N": lambda run, _, line: _number(run.mean_total_wheel_load_N / run.weight_N - 1.0, line),
-    "steps": lambda run, *_: f"{run.steps} accepted, {run.rejected_steps} rejected",
-    "solve_seconds": lambda run, *_: (
-        f"{run.solve_seconds:.2f} s, {run.microseconds_per_step:.0f} microseconds per step"
-    ),
+    "mean_total_wheel_load_N": lambda run, line: _text(run.mean_total_wheel_load_N / run.weight_N - 1.0, line),
+    "steps": lambda run, _: f"{run.steps} accepted, {run.rejected_steps} rejected",
+    "solve_seconds": lambda run, _: f"{run.solve_seconds:.2f} s, {run.microseconds_per_step:.0f} microseconds per step",
 }
 """What the terminal says of an answer where it is more than its number; nothing where that is empty."""
 
@@ -103,20 +94,13 @@ def _wheels(result: Result) -> "Table":
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for column in ("wheel", *(line.label for _, line in _lines(per_wheel=True))):
+    found = _lines(per_wheel=True)
+    for column in ("wheel", *(line.label for _, line in found)):
         table.add_column(column, justify="right")
-    for row in _wheel_rows(result):
-        table.add_row(*row)
+    columns = [[f"{value / line.per:{line.form}}" for value in getattr(result, one.name)] for one, line in found]
+    for i, *cells in zip(WHEELS, *columns, strict=True):
+        table.add_row(str(i), *cells)
     return table
-
-
-def _wheel_rows(result: Result) -> list[Sequence[str]]:
-    """Per wheel its number and its answers."""
-    columns = [
-        [f"{value / line.per:{line.form}}" for value in getattr(result, one.name)]
-        for one, line in _lines(per_wheel=True)
-    ]
-    return [(str(i), *cells) for i, *cells in zip(WHEELS, *columns, strict=True)]
 
 
 def _title(result: Result) -> str:

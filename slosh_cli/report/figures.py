@@ -3,9 +3,9 @@
 Every line differs from its neighbours in line style and in lightness, not in colour alone.
 """
 
-import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from textwrap import shorten, wrap
 from typing import Any, Final
 
 import numpy as np
@@ -13,10 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from slosh_cli.report.record import FIGURE_NAMES, caption, conditions, locked_stretches
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report import FIGURE_NAMES, FORMATS
+from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
-from slosh_cli.results.result import Record
+from slosh_cli.results.result import Record, Status
 
 RESOLUTION: Final = 200  # dots per inch
 _CAPTION_WIDTH: Final = 126  # characters
@@ -31,6 +31,8 @@ _ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
 FRONT: Final[dict[str, Any]] = {"color": "#08306b", "linestyle": "-"}
 REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
 ALARM: Final = "#a50f15"
+_LOCKED_SPEED: Final = 1e-3
+"""Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a figure."""
 
 
 def draw_run(
@@ -140,9 +142,35 @@ FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
 """Every figure of a run, by the name of its files."""
 
 
+def conditions(record: Record) -> str:
+    """Scenario, speed, torque and load in one line, for the head of a figure."""
+    load = f"liquid ({record.liquid_model})" if record.has_liquid else "equivalent solid"
+    speed = f"{record.initial_speed_m_s * 3.6:.4g} km/h"
+    torque = f"{record.torque_N_m / 1e3:.4g} kN m per wheel"
+    return f"{shorten(record.name, 48, placeholder='...')}: V₀ = {speed}, {torque}, {load}"
+
+
+def caption(record: Record) -> str:
+    """What a reader must know before trusting the figure: how the run ended, its warnings; mostly empty."""
+    ended = [] if record.status is Status.STOPPED else [f"The run ended as {record.status}: {record.reason}"]
+    return "\n".join([*ended, *(f"Warning: {warning}" for warning in record.warnings)])
+
+
+def locked_stretches(record: Record, i: int) -> list[tuple[float, float]]:
+    """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""
+    locked = np.abs(record.channels[wheel(i, "speed")]) < _LOCKED_SPEED
+    locked &= record.channels["speed"] > _LOCKED_SPEED
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], locked, [False])).astype(np.int8)))
+    last = len(record.time) - 1
+    return [
+        (float(record.time[start]), float(record.time[min(end, last)] - record.time[start]))
+        for start, end in edges.reshape(-1, 2)
+    ]
+
+
 def _panels(record: Record, title: str, shares: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
-    note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, _CAPTION_WIDTH))
+    note = "\n".join(line for text in caption(record).splitlines() for line in wrap(text, _CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
     extra = 0.195 * lines + 0.05 * bool(lines)
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)
@@ -151,14 +179,7 @@ def _panels(record: Record, title: str, shares: Sequence[float], height: float) 
     figure.text(0.018, 1.0 - 0.52 / total, conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
     if note:
         figure.text(
-            0.018,
-            0.12 / total,
-            note,
-            fontsize=10.5,
-            color=ALARM,
-            va="bottom",
-            linespacing=1.3,
-            parse_math=False,
+            0.018, 0.12 / total, note, fontsize=10.5, color=ALARM, va="bottom", linespacing=1.3, parse_math=False
         )
     figure.set_layout_engine("constrained", rect=(0.012, (extra + 0.1) / total, 0.98, 1.0 - (extra + 0.95) / total))
     axes = figure.subplots(len(shares), 1, sharex=True, squeeze=False, height_ratios=list(shares))[:, 0]

@@ -23,9 +23,9 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from slosh_cli.report import figures
+from slosh_cli.report import FORMATS, figures
 from slosh_cli.report.label_places import spread
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Status
 

@@ -17,9 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from slosh_cli.report import figures
+from slosh_cli.report import FORMATS, figures
 from slosh_cli.report.figures import FRONT, REAR
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.tank.mesh import Floats
 from slosh_cli.tank.section import TankGeometry, section_of
 

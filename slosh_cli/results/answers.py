@@ -5,7 +5,7 @@ JSON and HDF5 take them in the order of the class, tables in that of `Place`, th
 """
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import KW_ONLY, MISSING, dataclass, field, fields, replace
 from enum import Flag, IntEnum, auto
 from operator import attrgetter
@@ -81,7 +81,7 @@ class Answer:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Its columns in tables: one, or one per wheel, the unit in the name."""
+        """Its columns in tables, the unit in the name: one, or one per wheel."""
         if self.kind != PerWheel:
             return (self.column or self.name,)
         unit = "_" + self.unit.replace(" ", "_")
@@ -139,35 +139,26 @@ class Answers:
         return tuple(one for one in cls._answers if shown is None or shown in one.shown)
 
     @classmethod
-    def columns(cls, shown: Shown, first: Place = Place.NAME, last: Place = Place.WORDS) -> list[str]:
-        """The columns of a table of such records, from one place to another."""
-        return [column for one in cls._in_table(shown) if first <= one.place <= last for column in one.columns]
-
-    @classmethod
-    def conditions(cls, scenario: object) -> dict[str, Any]:
-        """The columns of a study that are known before a stop is computed."""
-        return _joined(one.cells(attrgetter(one.given)(scenario)) for one in cls._in_table(Shown.STUDY) if one.given)
-
-    @classmethod
-    def _in_table(cls, shown: Shown) -> list[Answer]:
-        return sorted(cls.table(shown), key=lambda one: one.place)
+    def in_table(cls, shown: Shown, first: Place = Place.NAME, last: Place = Place.WORDS) -> list[Answer]:
+        """The answers of a table of such records in the order of its columns, from one place to another."""
+        return sorted((one for one in cls.table(shown) if first <= one.place <= last), key=lambda one: one.place)
 
     def row(self, shown: Shown) -> dict[str, Any]:
         """The row of a table: column name (with unit) -> value, None where there is no answer."""
-        return _joined(one.cells(getattr(self, one.name)) for one in self._in_table(shown))
+        cells = (one.cells(getattr(self, one.name)) for one in self.in_table(shown))
+        return {column: value for some in cells for column, value in some.items()}
 
     def as_dict(self) -> dict[str, Any]:
         """The answers as JSON has them, by name; None where a number is missing."""
-        found = ((one, getattr(self, one.name)) for one in self.table(Shown.JSON))
-        return {one.name: _plain(value) for one, value in found if one.unit or value is not None}
+        return {one.name: _plain(value) for one, value in self._held(Shown.JSON) if one.unit or value is not None}
 
     def as_attributes(self) -> dict[str, Any]:
         """The answers as attributes of a file, by name."""
-        return {one.name: one.attribute(getattr(self, one.name)) for one in self.table(Shown.HISTORY)}
+        return {one.name: one.attribute(value) for one, value in self._held(Shown.HISTORY)}
 
-
-def _joined(cells: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    return {column: value for some in cells for column, value in some.items()}
+    def _held(self, shown: Shown) -> list[tuple[Answer, Any]]:
+        """The answers of an output with their values, without those that a file of an earlier version lacks."""
+        return [(one, getattr(self, one.name)) for one in self.table(shown) if hasattr(self, one.name)]
 
 
 def _plain(value: Any) -> Any:

@@ -29,20 +29,15 @@ _SCENARIO: Final = "scenario"
 
 
 def write_history(result: Result, path: Path) -> None:
-    """Write the history of a run, its scenario, its summary and its circumstances to the HDF5 file `path`.
+    """Write the history of a run, its scenario, its answers and its circumstances to the HDF5 file `path`.
 
     The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
     """
-    from slosh_cli.scenario import scenario_to_yaml
-
-    with _writing(path) as file:
-        time = _write_channel(file, TIME, result.time)
-        time.make_scale(TIME.name)
-        for name, values in result.channels.items():
-            _write_channel(file, channel(name), values).dims[0].attach_scale(time)
-        file.create_dataset(_SCENARIO, data=scenario_to_yaml(result.scenario), dtype=h5py.string_dtype())
-        for key, value in _attributes(result).items():
-            file.attrs[key] = value
+    channels = {channel(name): values for name, values in result.channels.items()}
+    ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
+    work = {f"work_{name}": int(count) for name, count in result.work.items()}
+    attributes = {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
+    _write(path, result.scenario, result.time, channels, attributes)
 
 
 def write_excitation(
@@ -56,16 +51,35 @@ def write_excitation(
 
     The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
     """
+    attributes = {"excitation_format_version": _FORMAT, **_circumstances(), **facts}
+    _write(path, scenario, time, channels, attributes)
+
+
+def _write(
+    path: Path,
+    scenario: "Scenario | TankScenario",
+    time: Vector,
+    channels: Mapping[Channel, Vector],
+    attributes: Mapping[str, Any],
+) -> None:
+    """Write the file; it replaces the one at `path` when all of it is on the disk.
+
+    HDF5 does not survive a disk that is full, or ends the process with it; so it never gets to know.
+    """
     from slosh_cli.scenario import scenario_to_yaml
 
-    with _writing(path) as file:
-        axis = _write_channel(file, TIME, time)
-        axis.make_scale(TIME.name)
-        for info, values in channels.items():
-            _write_channel(file, info, values).dims[0].attach_scale(axis)
-        file.create_dataset(_SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
-        for key, value in {"excitation_format_version": _FORMAT, **_circumstances(), **facts}.items():
-            file.attrs[key] = value
+    with replacing(path) as temporary, temporary.open("xb+") as target:
+        steady = SteadyFile(target)
+        with h5py.File(steady, "w") as file:
+            axis = _write_channel(file, TIME, time)
+            axis.make_scale(TIME.name)
+            for info, values in channels.items():
+                _write_channel(file, info, values).dims[0].attach_scale(axis)
+            file.create_dataset(_SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
+            for key, value in attributes.items():
+                file.attrs[key] = value
+        if steady.trouble is not None:
+            raise steady.trouble
 
 
 def read_history(path: Path) -> History:
@@ -108,20 +122,6 @@ def _refuse(path: Path, faults: Iterable[str]) -> None:
         raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
 
 
-@contextmanager
-def _writing(path: Path) -> Iterator[h5py.File]:
-    """An empty HDF5 file that replaces `path` when the block ends well and all of it is on the disk.
-
-    HDF5 does not survive a disk that is full, or ends the process with it; so it never gets to know.
-    """
-    with replacing(path) as temporary, temporary.open("xb+") as target:
-        steady = SteadyFile(target)
-        with h5py.File(steady, "w") as file:
-            yield file
-        if steady.trouble is not None:
-            raise steady.trouble
-
-
 def is_of(path: Path, scenario: "Scenario | TankScenario", settings: str = "") -> bool:
     """Whether the file at `path` is the history of this scenario under these settings; descriptions do not count."""
     from slosh_cli.scenario import scenario_to_yaml
@@ -157,13 +157,6 @@ def _circumstances() -> dict[str, Any]:
         "numba_version": version("numba"),
         "platform": f"{platform.platform()} {sys.byteorder}-endian",
     }
-
-
-def _attributes(result: Result) -> dict[str, Any]:
-    """Root attributes: circumstances, answers, ledger, work."""
-    ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
-    work = {f"work_{name}": int(count) for name, count in result.work.items()}
-    return {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
 
 
 def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:

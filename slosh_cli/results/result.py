@@ -172,7 +172,7 @@ class Record(Answers):
         over = [check for check in found.get("checks", ()) if not check.within]
         over.sort(key=lambda check: check.value / check.limit if check.limit else np.inf, reverse=True)
         lines += [f"  over its limit: {check.name} ({check.value:.3g} > {check.limit:.3g})" for check in over[:_WORST]]
-        return "\n".join([*lines, *([f"  and {len(over) - _WORST} more checks"] if len(over) > _WORST else [])])
+        return "\n".join([*lines, *([f"  and {len(over) - _WORST} more"] if len(over) > _WORST else [])])
 
     def to_frame(self) -> "pd.DataFrame":
         """The history as a DataFrame: index `time` in s, one column per channel, all in SI units."""
@@ -189,18 +189,13 @@ class Record(Answers):
             import xarray as xr
         except ImportError as error:
             raise UsageError(f"to_xarray needs xarray; install it with: {install_command('xarray')}") from error
+        pairs = [(TIME, self.time), *((channel(name), values) for name, values in self.channels.items())]
         columns = {
-            info.name: (TIME.name, values, {"units": info.unit, "long_name": info.long_name})
-            for info, values in [
-                (TIME, self.time),
-                *((channel(name), values) for name, values in self.channels.items()),
-            ]
+            info.name: (TIME.name, values, {"units": info.unit, "long_name": info.long_name}) for info, values in pairs
         }
-        attributes = {
-            name: int(value) if value is True or value is False else value
-            for name, value in self.as_attributes().items()
-        }
-        return xr.Dataset(columns, attrs=attributes).set_coords(TIME.name)
+        facts = self.as_attributes()  # netCDF knows no true and false
+        plain = {name: int(value) if isinstance(value, bool) else value for name, value in facts.items()}
+        return xr.Dataset(columns, attrs=plain).set_coords(TIME.name)
 
 
 class Result(Record):

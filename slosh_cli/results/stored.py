@@ -40,14 +40,13 @@ class History(Record):
     def __init__(
         self, *, time: Vector, channels: Mapping[str, Vector], attributes: Mapping[str, Any], scenario_text: str
     ) -> None:
+        held = {one.name: _value(one, attributes[one.name]) for one in History.table() if one.name in attributes}
         given = {"time": time, "channels": channels, "attributes": attributes, "scenario_text": scenario_text}
-        for name, value in given.items():
+        for name, value in (held | given).items():
             object.__setattr__(self, name, value)
         for one in History.table():
-            if one.name in attributes:
-                object.__setattr__(self, one.name, _value(one, attributes[one.name]))
-            elif one.of and Shown.HISTORY not in one.shown:
-                with suppress(AttributeError):
+            if one.of and Shown.HISTORY not in one.shown:
+                with suppress(AttributeError, ArithmeticError):
                     object.__setattr__(self, one.name, one.of(self))
 
 

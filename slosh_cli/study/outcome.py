@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.errors import SloshError
@@ -58,7 +59,10 @@ def solve(stop: Stop, cancel: Cancel | None = None) -> Outcome:
 
 def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> Outcome:
     """The outcome of a stop that ended without a result."""
-    return Outcome(stop.index, stop.key, without_result(Result.conditions(stop.scenario), reason), final, seconds)
+    given = [one for one in Result.in_table(Shown.STUDY) if one.given]
+    cells = (one.cells(attrgetter(one.given)(stop.scenario)) for one in given)
+    conditions = {column: value for some in cells for column, value in some.items()}
+    return Outcome(stop.index, stop.key, without_result(conditions, reason), final, seconds)
 
 
 def without_result(conditions: dict[str, Any], reason: str) -> dict[str, Any]:

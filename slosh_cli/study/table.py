@@ -30,7 +30,9 @@ def column_of(axis: Axis) -> str:
 def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
     """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
     varied = [column_of(axis) for axis in own_axes(study)]
-    head, answers, words = (Record.columns(Shown.STUDY, first, last) for first, last in _PLACES)
+    head, answers, words = (
+        [column for one in Record.in_table(Shown.STUDY, *places) for column in one.columns] for places in _PLACES
+    )
     known = [*head, *varied, _RATIO, *answers]
     others = dict.fromkeys(name for row in rows for name in row)
     end = [*words, *(["history"] if study.histories else [])]

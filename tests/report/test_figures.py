@@ -12,8 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
 from slosh_cli.report import figures
-from slosh_cli.report.figures import FIGURES, WHEEL_STYLES, draw_run
-from slosh_cli.report.record import caption, conditions, locked_stretches
+from slosh_cli.report.figures import FIGURES, WHEEL_STYLES, caption, conditions, draw_run, locked_stretches
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Result, Status
