@@ -84,7 +84,7 @@ class Answer:
         """Its columns in tables, the unit in the name: one, or one per wheel."""
         if self.kind != PerWheel:
             return (self.column or self.name,)
-        unit = "_" + self.unit.replace(" ", "_")
+        unit = "" if self.unit == "1" else "_" + self.unit.replace(" ", "_").replace("/", "_")
         return tuple(f"{self.name.removesuffix(unit)}_{i}{unit}" for i in WHEELS)
 
     def value_in(self, record: Any) -> Any:
