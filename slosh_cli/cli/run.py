@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from slosh_cli.results.result import Result
     from slosh_cli.scenario import Scenario
 
-HISTORY: Final = "run.h5"
-SUMMARY: Final = "summary.csv"
+_HISTORY: Final = "run.h5"
+_SUMMARY: Final = "summary.csv"
 
 
 def register(app: typer.Typer) -> None:
     """Add the command to the tree."""
-    app.command("run")(run)
+    app.command("run")(_run)
 
 
-def run(
+def _run(
     scenario_file: ScenarioFile,
     output: OutputFolder = None,
     overrides: Overrides = None,
@@ -68,25 +68,29 @@ def _write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: boo
     What an earlier run left in `folder` goes.
     """
     from slosh_cli.report import FIGURE_NAMES
+    from slosh_cli.results.answers import Shown
     from slosh_cli.results.hdf5 import write_history
-    from slosh_cli.results.tables import write_summary
+    from slosh_cli.results.tables import write_table
 
     def draw(name: str, folder: Path) -> None:
         from slosh_cli.report.figures import draw_run
 
         draw_run(result, folder, names=(name,))
 
-    numbers = {SUMMARY: partial(write_summary, result), HISTORY: partial(write_history, result)}
+    numbers = {
+        _SUMMARY: lambda path: write_table([result.row(Shown.SUMMARY)], path),
+        _HISTORY: lambda path: write_history(result, path),
+    }
     drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
     files = keeping.keep(folder, _files(), numbers, drawn)
-    return by_kind(files, history=HISTORY, summary=SUMMARY)
+    return by_kind(files, history=_HISTORY, summary=_SUMMARY)
 
 
 def _files() -> list[str]:
     """Names of all files that a run may write."""
     from slosh_cli.report import FIGURE_NAMES, FORMATS
 
-    return [HISTORY, SUMMARY, *(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)]
+    return [_HISTORY, _SUMMARY, *(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)]
 
 
 def _default(scenario: "Scenario", overrides: list[str] | None) -> Path:
@@ -94,7 +98,7 @@ def _default(scenario: "Scenario", overrides: list[str] | None) -> Path:
     from slosh_cli.results.hdf5 import is_of
 
     def fits(folder: Path) -> bool:
-        return not (folder / HISTORY).exists() or is_of(folder / HISTORY, scenario)
+        return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario)
 
     return free_folder(default_folder(scenario.name, overrides), fits)
 

@@ -21,7 +21,7 @@ from slosh_cli.results.result import Record, Status
 RESOLUTION: Final = 200  # dots per inch
 _CAPTION_WIDTH: Final = 126  # characters
 
-WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
+_WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
     1: {"color": "#08306b", "linestyle": "-", "label": "wheel 1"},
     2: {"color": "#4a98c9", "linestyle": (0, (6, 2)), "label": "wheel 2"},
     3: {"color": "#8c2d04", "linestyle": (0, (6, 2, 1, 2)), "label": "wheel 3"},
@@ -31,8 +31,6 @@ _ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
 FRONT: Final[dict[str, Any]] = {"color": "#08306b", "linestyle": "-"}
 REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
 ALARM: Final = "#a50f15"
-_LOCKED_SPEED: Final = 1e-3
-"""Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a figure."""
 
 
 def draw_run(
@@ -55,7 +53,7 @@ def _contact_forces(record: Record) -> Figure:
     """Normal forces of the four wheels against time (Figure 2 of the paper)."""
     figure, (axes,) = _panels(record, "Wheel loads during braking", [1.0], height=5.6)
     for i in WHEELS:
-        style = WHEEL_STYLES[i] | ({"label": _ENDS[i]} if i in _ENDS else {})
+        style = _WHEEL_STYLES[i] | ({"label": _ENDS[i]} if i in _ENDS else {})
         axes.plot(record.time, record.channels[wheel(i, "normal_force")] / 1e3, **style)
     for load in sorted({round(load / 1e3, 1) for load in record.static_wheel_load_N}):
         at_rest = axes.axhline(load, color=MUTED, linewidth=1.0, linestyle=":", zorder=1)
@@ -97,8 +95,8 @@ def _wheel_speed(record: Record) -> Figure:
         label="train",
     )  # fmt: skip
     for i in WHEELS:
-        speed.plot(record.time, record.channels[wheel(i, "speed")] * 3.6, **WHEEL_STYLES[i])
-        slip.plot(record.time, 100.0 * record.channels[wheel(i, "creepage")], **WHEEL_STYLES[i])
+        speed.plot(record.time, record.channels[wheel(i, "speed")] * 3.6, **_WHEEL_STYLES[i])
+        slip.plot(record.time, 100.0 * record.channels[wheel(i, "creepage")], **_WHEEL_STYLES[i])
     speed.set_ylabel("circumferential\nspeed / km/h")
     speed.set_ylim(bottom=0.0)
     slip.set_ylim(5e-3, 200.0)
@@ -142,7 +140,7 @@ FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
 """Every figure of a run, by the name of its files."""
 
 
-def conditions(record: Record) -> str:
+def _conditions(record: Record) -> str:
     """Scenario, speed, torque and load in one line, for the head of a figure."""
     load = f"liquid ({record.liquid_model})" if record.has_liquid else "equivalent solid"
     speed = f"{record.initial_speed_m_s * 3.6:.4g} km/h"
@@ -150,33 +148,21 @@ def conditions(record: Record) -> str:
     return f"{shorten(record.name, 48, placeholder='...')}: V₀ = {speed}, {torque}, {load}"
 
 
-def caption(record: Record) -> str:
+def _caption(record: Record) -> str:
     """What a reader must know before trusting the figure: how the run ended, its warnings; mostly empty."""
     ended = [] if record.status is Status.STOPPED else [f"The run ended as {record.status}: {record.reason}"]
     return "\n".join([*ended, *(f"Warning: {warning}" for warning in record.warnings)])
 
 
-def locked_stretches(record: Record, i: int) -> list[tuple[float, float]]:
-    """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""
-    locked = np.abs(record.channels[wheel(i, "speed")]) < _LOCKED_SPEED
-    locked &= record.channels["speed"] > _LOCKED_SPEED
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], locked, [False])).astype(np.int8)))
-    last = len(record.time) - 1
-    return [
-        (float(record.time[start]), float(record.time[min(end, last)] - record.time[start]))
-        for start, end in edges.reshape(-1, 2)
-    ]
-
-
 def _panels(record: Record, title: str, shares: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
-    note = "\n".join(line for text in caption(record).splitlines() for line in wrap(text, _CAPTION_WIDTH))
+    note = "\n".join(line for text in _caption(record).splitlines() for line in wrap(text, _CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
     extra = 0.195 * lines + 0.05 * bool(lines)
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)
     total = height + extra
     figure.text(0.018, 1.0 - 0.16 / total, title, fontsize=17, fontweight="bold", color=INK, va="top")
-    figure.text(0.018, 1.0 - 0.52 / total, conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
+    figure.text(0.018, 1.0 - 0.52 / total, _conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
     if note:
         figure.text(
             0.018, 0.12 / total, note, fontsize=10.5, color=ALARM, va="bottom", linespacing=1.3, parse_math=False
@@ -210,9 +196,9 @@ def _draw_locked(record: Record, axes: Axes) -> None:
     """One bar per wheel, filled where the wheel stands while the wagon moves."""
     found = False
     for i in WHEELS:
-        stretches = locked_stretches(record, i)
+        stretches = record.locked_stretches(i)
         found = found or bool(stretches)
-        axes.broken_barh(stretches, (i - 0.36, 0.72), facecolor=WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8)
+        axes.broken_barh(stretches, (i - 0.36, 0.72), facecolor=_WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8)
     axes.set_ylim(4.6, 0.4)
     axes.set_yticks(list(WHEELS))
     axes.set_ylabel("locked\nwheel")

@@ -109,8 +109,3 @@ def channel(name: str) -> Channel:
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")
     raise KeyError(f"There is no channel named {name!r}.")
-
-
-def is_channel(name: str) -> bool:
-    """Whether a channel is called `name`."""
-    return name in CHANNELS or _SLOSH_AMPLITUDE.fullmatch(name) is not None

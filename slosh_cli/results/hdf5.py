@@ -1,23 +1,24 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
+import io
+import os
 import platform
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 import h5py
 import numpy as np
 
 from slosh_cli.errors import MOST_SHOWN
-from slosh_cli.results.channels import TIME, Channel, channel, is_channel
+from slosh_cli.results.channels import TIME, Channel, channel
 from slosh_cli.results.files import FileError, replacing
 from slosh_cli.results.result import Result, Vector
-from slosh_cli.results.steady_file import SteadyFile
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.version import __version__
 
@@ -69,7 +70,7 @@ def _write(
     from slosh_cli.scenario import scenario_to_yaml
 
     with replacing(path) as temporary, temporary.open("xb+") as target:
-        steady = SteadyFile(target)
+        steady = _SteadyFile(target)
         with h5py.File(steady, "w") as file:
             axis = _write_channel(file, TIME, time)
             axis.make_scale(TIME.name)
@@ -99,11 +100,18 @@ def read_history(path: Path) -> History:
 
 def _columns(path: Path, file: h5py.File) -> dict[str, Vector]:
     """The time axis and every channel that the file has; what else is in it is left alone."""
-    known = [name for name in file if name == TIME.name or is_channel(name)]
+    known = [name for name in file if _is_known(name)]
     missing = [name for name in (TIME.name, *sorted(NEEDED)) if name not in known]
     lacks = [f"it lacks the channels {', '.join(missing)}"] if missing else []
     _refuse(path, [*lacks, *(fault for name in known for fault in faults_of_shape(name, file.get(name)))])
     return {name: np.asarray(file[name][:], dtype=np.float64) for name in known}
+
+
+def _is_known(name: str) -> bool:
+    try:
+        return name == TIME.name or bool(channel(name))
+    except KeyError:
+        return False
 
 
 def _text(path: Path, file: h5py.File) -> str:
@@ -188,3 +196,61 @@ def _unreadable(path: Path) -> Iterator[None]:
         yield
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise FileError(f"cannot read {path} as a slosh history (HDF5): {error}", where=str(path)) from error
+
+
+class _SteadyFile(io.RawIOBase):
+    """A binary file that takes everything it is given; `trouble` is why the disk did not, None where it did."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._place = self._end = 0
+        self.trouble: OSError | KeyboardInterrupt | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    def writable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        self._place = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._end}[whence]
+        return self._place
+
+    def tell(self) -> int:
+        return self._place
+
+    def write(self, data: Any) -> int:
+        count = memoryview(data).nbytes
+        self._try(lambda: self._file.write(data))
+        self._place += count
+        self._end = max(self._end, self._place)
+        return count
+
+    def readinto(self, buffer: Any) -> int:
+        view = memoryview(buffer).cast("B")
+        view[:] = bytes(len(view))
+        self._try(lambda: self._file.readinto(view))  # type: ignore[attr-defined]
+        self._place += len(view)
+        return len(view)
+
+    def truncate(self, size: int | None = None) -> int:
+        self._end = self._place if size is None else size
+        self._try(lambda: self._file.truncate(self._end))
+        return self._end
+
+    def flush(self) -> None:
+        if not self.closed:
+            self._try(self._file.flush)
+
+    def _try(self, action: Callable[[], object]) -> None:
+        """Carry `action` out at the present place, unless the disk has refused before."""
+        if self.trouble is not None:
+            return
+        try:
+            self._file.seek(self._place)
+            action()
+        except (OSError, KeyboardInterrupt) as error:  # neither may pass through HDF5
+            self.trouble = error

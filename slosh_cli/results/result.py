@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answers, Line, PerWheel, Place, Shown, computed, derived
-from slosh_cli.results.channels import TIME, channel
+from slosh_cli.results.channels import TIME, channel, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
 
@@ -59,6 +59,8 @@ _REMEDIES = {
 
 _NOT_THE_LIQUID = ("wheels lifted off", PITCH_CHECK)
 """Checks of the model's range that are not about the liquid: what they tell leaves the distance alone."""
+_LOCKED_SPEED = 1e-3
+"""Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a history."""
 _WORST = 5
 """Exceeded checks that the short form of a record names."""
 
@@ -157,6 +159,17 @@ class Record(Answers):
     def has_liquid(self) -> bool:
         """Whether the load can slosh."""
         return self.liquid_model != "rigid"
+
+    def locked_stretches(self, i: int) -> list[tuple[float, float]]:
+        """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""
+        locked = np.abs(self.channels[wheel(i, "speed")]) < _LOCKED_SPEED
+        locked &= self.channels["speed"] > _LOCKED_SPEED
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], locked, [False])).astype(np.int8)))
+        last = len(self.time) - 1
+        return [
+            (float(self.time[start]), float(self.time[min(end, last)] - self.time[start]))
+            for start, end in edges.reshape(-1, 2)
+        ]
 
     def __repr__(self) -> str:
         """What it was, how it ended, and the checks exceeded most: less than a screen."""

@@ -5,19 +5,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from slosh_cli.results.answers import Shown
 from slosh_cli.results.files import replacing
-from slosh_cli.results.result import Result
 from slosh_cli.scenario.scalars import plain_number
 
 _FORMULA: Final = tuple("=+-@＝＋－＠")
 """What a spreadsheet takes for the beginning of a formula."""
 _CONTROL: Final = tuple("\t\r\n")
-
-
-def summary_row(result: Result) -> dict[str, Any]:
-    """One stop as a row: column name (with unit) -> value; None where the run has no answer."""
-    return result.row(Shown.SUMMARY)
 
 
 def write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -62,8 +55,3 @@ def _cell(value: Any) -> Any:
     runs = value.startswith(_CONTROL) or value.lstrip()[:1] in _FORMULA
     mark = "'" if runs and plain_number(value.strip()) is None else ""
     return mark + "\n".join(value.replace("\r\n", "\n").split("\r"))
-
-
-def write_summary(result: Result, path: Path) -> None:
-    """Write `summary.csv`: the one row of `summary_row`."""
-    write_table([summary_row(result)], path)

@@ -14,7 +14,7 @@ from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
 TABLE: Final = "braking_distance.csv"
 
-Row = dict[str, Any]
+_Row = dict[str, Any]
 
 _RATIO: Final = "ratio_to_solid"
 _PLACES: Final = ((Place.NAME, Place.STATUS), (Place.RANGE, Place.RUN), (Place.WORDS, Place.WORDS))
@@ -27,9 +27,9 @@ def column_of(axis: Axis) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "_", f"{axis.key}_{axis.unit}").strip("_")
 
 
-def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
+def columns(study: Study, rows: Iterable[_Row] = ()) -> list[str]:
     """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
-    varied = [column_of(axis) for axis in own_axes(study)]
+    varied = [column_of(axis) for axis in _own_axes(study)]
     head, answers, words = (
         [column for one in Record.in_table(Shown.STUDY, *places) for column in one.columns] for places in _PLACES
     )
@@ -39,12 +39,12 @@ def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
     return [*known, *(name for name in others if name not in known and name not in end), *end]
 
 
-def own_axes(study: Study) -> list[Axis]:
+def _own_axes(study: Study) -> list[Axis]:
     """The axes that have a column of their own: all but speed, torque and liquid."""
     return [axis for axis in study.axes if axis.key not in _OF_THE_HEAD]
 
 
-def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Iterator[Row]:
+def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Iterator[_Row]:
     """Rows in the order of the grid, one group of liquids in memory at a time.
 
     `answer` gives the row of a stop by its index, None for one that has not been computed: it is left out.
@@ -64,12 +64,12 @@ def _point(study: Study, index: int) -> tuple[int, ...]:
     return tuple(place for axis, place in pairs if axis.key != LIQUID)
 
 
-def _row(study: Study, index: int, given: Mapping[str, Any]) -> Row:
+def _row(study: Study, index: int, given: Mapping[str, Any]) -> _Row:
     places = dict(zip((axis.key for axis in study.axes), study.positions(index), strict=True))
-    return dict(given) | {column_of(axis): axis.plain(places[axis.key]) for axis in own_axes(study)}
+    return dict(given) | {column_of(axis): axis.plain(places[axis.key]) for axis in _own_axes(study)}
 
 
-def _ratio(row: Row, solid: Row | None) -> float | None:
+def _ratio(row: _Row, solid: _Row | None) -> float | None:
     """Braking distance over that of the equivalent solid; None for the solid itself and without both answers."""
     if solid is None or row is solid:
         return None

@@ -16,7 +16,7 @@ from slosh_cli.results.answers import Answers, Line, PerWheel, Place, Shown, com
 from slosh_cli.results.channels import CHANNELS
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Record, Result
-from slosh_cli.results.tables import write_summary
+from slosh_cli.results.tables import write_table
 from slosh_cli.results.validity import Check
 from slosh_cli.study.table import columns
 
@@ -105,7 +105,7 @@ def test_one_line_brings_an_answer_into_every_output(
 ) -> None:
     from slosh_cli.cli import summary
 
-    write_summary(extended, tmp_path / "summary.csv")
+    write_table([extended.row(Shown.SUMMARY)], tmp_path / "summary.csv")
     assert pd.read_csv(tmp_path / "summary.csv")["worst_jerk_m_s3"][0] == 1.25
     write_history(extended, tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:
