@@ -3,6 +3,7 @@
 import json
 import sys
 from dataclasses import FrozenInstanceError, fields, replace
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from slosh_cli.results.tables import write_table
 from slosh_cli.results.validity import Check
 from slosh_cli.study.table import columns
 
+DOCS = Path(__file__).parents[2] / "docs"
 FOUR = (1.0, 2.0, 3.0, 4.0)
 
 
@@ -218,3 +220,12 @@ def test_without_xarray_one_is_told_how_to_get_it(result: Result, monkeypatch: p
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(UsageError, match="to_xarray needs xarray; install it with: python -m pip install"):
         result.to_xarray()
+
+
+def test_the_page_of_answers_is_made_from_their_table() -> None:
+    spec = spec_from_file_location("answers_page", DOCS / "answers.py")
+    assert spec is not None
+    assert spec.loader is not None
+    made = module_from_spec(spec)
+    spec.loader.exec_module(made)
+    assert (DOCS / "answers.md").read_text(encoding="utf-8") == made.page(), "python docs/answers.py"
