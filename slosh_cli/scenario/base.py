@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, TypeAlias, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, TypeAdapter, model_validator
 from pydantic_core import core_schema
 
-from slosh_cli.scenario.leaves import Quantity, Range
+from slosh_cli.scenario.leaves import Leaf, Quantity, Range
 
 if TYPE_CHECKING:
     from slosh_cli.scenario.rules import Finding, Values
@@ -95,6 +95,18 @@ class Part(BaseModel):
         return tuple(key for field in cls.model_fields for key in (field, second.get(field)) if key is not None)
 
     @classmethod
+    def sketch(cls, *, samples: bool) -> str:
+        """The keys that the part must have, as it is written on one line, of single values with `samples`."""
+        written: list[str] = []
+        for name, entry in cls.model_fields.items():
+            leaf = next((note for note in entry.metadata if isinstance(note, Leaf)), None)
+            if get_origin(entry.annotation) is Literal and leaf is None:
+                written.insert(0, f"{name}: {get_args(entry.annotation)[0]}")
+            elif entry.is_required() or any(name == group[0] for group in cls.exactly_one):
+                written.append(f"{name}: {leaf.sample() if leaf and samples else '...'}")
+        return f"{{{', '.join(written)}}}"
+
+    @classmethod
     def field_of(cls, key: str) -> str:
         """The field that a key stands for: itself, or what it is the alias of."""
         return next((alias.field for alias in cls.aliases if alias.key == key), key)
@@ -108,6 +120,8 @@ class Part(BaseModel):
     @classmethod
     def rivals(cls, key: str) -> list[str]:
         """The keys that may not stand beside `key`."""
+        if not cls.aliases and not cls.exactly_one:
+            return []
         groups = [*((alias.key, alias.field) for alias in cls.aliases), *cls.exactly_one]
         return [other for group in groups if key in group for other in group if other != key]
 

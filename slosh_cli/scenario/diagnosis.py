@@ -27,7 +27,9 @@ def diagnose(model: type[_P], data: Mapping[str, Any]) -> tuple[_P | None, tuple
     try:
         return model.from_text(data), ()
     except ValidationError as error:
-        findings = list(_translated(Spot(part=model), data, error.errors(include_url=False)))
+        entries = error.errors(include_url=False)
+    findings = list(_translated(Spot(part=model), data, entries))
+    findings = findings or [_wrong_form(entry["loc"], entry["input"], None) for entry in entries]
     guessed = _with_guessed_tags(model, data)
     if guessed is not None:
         findings += diagnose(model, guessed)[1]
@@ -105,7 +107,10 @@ def _translated(root: Spot, data: Mapping[str, Any], entries: Iterable[Any]) -> 
         path = root.data_path(data, entry["loc"], kind)
         if path is None:
             continue
-        if kind == "rules":
+        spot = root.at(data, path) or Spot()
+        if spot.branches and not spot.pick and spot.chosen(value_at(data, path)) is None:
+            yield _wrong_form(path, value_at(data, path), spot)
+        elif kind == "rules":
             yield from context["findings"]
         elif kind == "refused":
             yield Finding(path, context["rule"], context["given"], context["fix"])
@@ -115,9 +120,9 @@ def _translated(root: Spot, data: Mapping[str, Any], entries: Iterable[Any]) -> 
             guessed.add(str(path[-1]))
             yield UnknownKey(root, data, path).finding(guessing=len(guessed) <= _MOST_GUESSES)
         elif kind == "too_short":
-            yield from _too_short(path, len(entry["input"]), context["min_length"], root.at(data, path) or Spot())
+            yield from _too_short(path, len(entry["input"]), context["min_length"], spot)
         else:
-            yield _wrong_form(path, entry["input"], root.at(data, path))
+            yield _wrong_form(path, entry["input"], spot)
 
 
 def _too_short(path: Path, given: int, least: int, spot: Spot) -> Iterator[Finding]:
@@ -177,15 +182,8 @@ def _sketch(spot: Spot) -> str:
         return spot.leaf.sample()
     if spot.items is not None:
         return f"[{_sketch(spot.items)}]"
-    if spot.parts:
-        tag, first = next(iter(spot.parts.items()))
-        return f"{{{', '.join([f'{spot.key}: {tag}', *_needed(first, without=spot.key)])}}}"
-    return f"{{{', '.join(_needed(spot.part))}}}" if spot.part else "..."
-
-
-def _needed(part: type[Part], without: str = "") -> list[str]:
-    names = [name for name, entry in part.model_fields.items() if entry.is_required() and name != without]
-    return [f"{name}: ..." for name in [*names, *(group[0] for group in part.exactly_one)]]
+    part = next(iter(spot.parts.values()), spot.part)
+    return part.sketch(samples=False) if part else "..."
 
 
 def _how_to_write(name: str, parent: type[Part] | None) -> str:

@@ -22,7 +22,7 @@ from slosh_cli.scenario.plain_data import plain_data, si_values, write_out
 from slosh_cli.scenario.rules import Values
 from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.source import text_of
-from slosh_cli.scenario.tree import Spot, value_at
+from slosh_cli.scenario.tree import Spot
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import NAME, Text
 from slosh_cli.scenario.yaml_text import dump, parse, parse_override
@@ -79,11 +79,12 @@ class Root(Part):
         Keys are key paths. Numbers are SI values; texts are read as in a file (``"12 kN m"``, ``"computed"``).
         Raises ScenarioError, each problem placed at its key path.
         """
-        document = self._overridden({key.partition(".")[0] for key in overrides}, overrides)
+        changed = {key.partition(".")[0] for key in overrides}
+        document = self._overridden(overrides, [name for name in vars(self) if name not in changed])
         if not document.problems:
             with suppress(ValidationError):
                 return self.from_text(document.data).after_overrides(document, self, self.name)
-        document = self._overridden(vars(self), overrides)
+        document = self._overridden(overrides, ())
         return self.of(document, self.name).after_overrides(document, self, self.name)
 
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:  # noqa: ARG002 - roots say it
@@ -103,11 +104,9 @@ class Root(Part):
             raise PydanticCustomError("rules", "{text}", {"text": text, "findings": findings})
         return self
 
-    def _overridden(self, parts: Collection[str], overrides: Mapping[str, Any]) -> Document:
-        """The scenario with its `parts` as plain data and overridden; the others, valid as they are, stay so."""
-        values = vars(self).items()
-        opened = {name: _as_data(part) for name, part in values if name in parts}
-        document = Document({**vars(self), **opened}, origins={(): Origin()})
+    def _overridden(self, overrides: Mapping[str, Any], kept: Collection[str]) -> Document:
+        """The scenario as plain data and overridden; the parts that are `kept`, valid as they are, stay so."""
+        document = Document(plain_data(self, as_text=False, kept=kept), origins={(): Origin()})
         for key, value in overrides.items():
             if not _is_writable(document, key, key):
                 continue
@@ -160,13 +159,6 @@ def scenario_to_yaml(scenario: Root) -> str:
     return dump(plain_data(scenario, as_text=True))
 
 
-def _as_data(value: Any) -> Any:
-    """Parts, also those in a list, as plain data."""
-    if isinstance(value, tuple | list):
-        return [_as_data(item) for item in value]
-    return plain_data(value, as_text=False) if isinstance(value, Part) else value
-
-
 def _source(path: str | Path) -> Path:
     """The file itself; or the packaged scenario of that name, ``paper-80-liquid``, where there is no such file."""
     file = Path(path)
@@ -207,9 +199,8 @@ def _make_room(document: Document, model: type[Part], path: tuple[str, ...]) -> 
     Both stay where both come from overrides; that is refused like both in a file.
     """
     place = document.normal(path)
-    for end, key in enumerate(path):
-        above = place[:end]
-        part = Spot(part=model).part_at(document.data, above)
-        for other in part.rivals(key) if part and isinstance(value_at(document.data, above), dict) else ():
-            if not document.origin((*above, other)).override:
-                document.remove((*above, other))
+    for end, (spot, value) in enumerate(list(Spot(part=model).way(document.data, place[:-1]))):
+        chosen = spot.chosen(value) if spot and isinstance(value, dict) else None
+        for other in chosen.part.rivals(path[end]) if chosen and chosen.part else ():
+            if not document.origin((*place[:end], other)).override:
+                document.remove((*place[:end], other))

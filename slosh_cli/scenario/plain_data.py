@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import cache
 from typing import Any
 
@@ -10,15 +11,19 @@ from slosh_cli.scenario.leaves import SIValue
 from slosh_cli.scenario.tree import Spot, spot_of, value_at
 
 
-def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:
+def plain_data(part: Part, *, as_text: bool, kept: Collection[str] = ()) -> dict[str, Any]:
     """Mappings, lists and scalars that read back as `part`, of a member of a union its tag first.
 
     With `as_text` every quantity is text in SI units and every default is written out; otherwise quantities
-    are SIValue.
+    are SIValue. Parts in the fields `kept` stay parts.
     """
     without = part.unwritten(as_text=as_text)
     values = ((name, spot, getattr(part, name)) for name, spot in _spots(type(part)) if name not in without)
-    return {name: _plain(value, spot, as_text) for name, spot, value in values if value is not None}
+    return {
+        name: value if name in kept and isinstance(value, Part) else _plain(value, spot, as_text)
+        for name, spot, value in values
+        if value is not None
+    }
 
 
 @cache
@@ -30,6 +35,7 @@ def _spots(model: type[Part]) -> tuple[tuple[str, Spot], ...]:
 def _plain(value: Any, spot: Spot | None, as_text: bool) -> Any:
     if isinstance(value, Part):
         return plain_data(value, as_text=as_text)
+    spot = spot.chosen(value) if spot else None
     if spot is not None and spot.leaf is not None:
         return spot.leaf.written(value, as_text=as_text)
     if isinstance(value, tuple | list):
@@ -57,8 +63,7 @@ def write_out(model: type[Part], data: dict[str, Any], path: Path) -> None:
 
     An override is about to change one of its values.
     """
-    for end in range(1, len(path)):
-        spot, value = Spot(part=model).at(data, path[:end]), value_at(data, path[:end])
+    for end, (spot, value) in enumerate(Spot(part=model).way(data, path[:-1])):
         part = spot.short.part(value) if spot and spot.short else None
         if part is not None:
             value_at(data, path[: end - 1])[path[end - 1]] = plain_data(part, as_text=True)

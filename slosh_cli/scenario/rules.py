@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part, Path
 from slosh_cli.scenario.tree import Spot, spot_of
+from slosh_cli.scenario.words import all_of
 
 
 @dataclass(frozen=True)
@@ -68,21 +69,20 @@ class Values:
             above: Path = tuple(int(step) if step.isdecimal() else step for step in prefix.split(".")[:-1])
             here = replace(self, prefix=prefix)
             for group in model.exactly_one:
-                yield from here._not_exactly_one(group, above)
+                yield from here._not_exactly_one(group, above, spot_of(model, group[0]))
             for rule in model.rules:
                 for finding in rule(here):
                     yield replace(finding, path=(*above, *finding.path))
 
-    def _not_exactly_one(self, group: tuple[str, ...], above: Path) -> Iterator[Finding]:
+    def _not_exactly_one(self, group: tuple[str, ...], above: Path, first: Spot) -> Iterator[Finding]:
         written = [name for name in group if self.wrote(name) and self.get(name, ...) is not None]
         for name in written[1:]:
             yield Finding((*above, name), f"must not be given beside `{written[0]}`", "both", "keep one of them")
         if not written:
-            keys = ", ".join(f"`{name}`" for name in group)
-            fix = f"write one of them, such as `{group[0]}: ...`"
-            yield Finding(
-                above, f"must have one of {keys}", "none", fix, missing=tuple((*above, name) for name in group)
-            )
+            sample = first.leaf.sample() if first.leaf else "..."
+            fix = f"write one of them, such as `{group[0]}: {sample}`"
+            missing = tuple((*above, name) for name in group)
+            yield Finding(above, f"must have one of the keys {all_of(group)}", "none", fix, missing=missing)
 
     def add(self, part: Part, prefix: str = "") -> None:
         """Take in all values of a validated part."""
@@ -91,7 +91,10 @@ class Values:
         keys = _keys_of(model, prefix)
         self.explicit.update([keys[name] for name in part.model_fields_set])
         for name, value in vars(part).items():
-            self._take(value, keys[name])
+            if isinstance(value, Part):
+                self.add(value, f"{keys[name]}.")
+            else:
+                self._take(value, keys[name])
 
     def add_valid(self, model: type[Part], data: Mapping[str, Any], prefix: str = "") -> None:
         """Take in what is valid in data that as a whole is not; keys with an invalid value are left out."""
@@ -103,21 +106,24 @@ class Values:
                 self.explicit.add(key)
                 self._add_valid(spot_of(model, name), model, name, data[name], key)
             elif not entry.is_required():
-                self._take(entry.get_default(), key)
+                self._take_valid(entry.get_default(), key)
 
     def _begin(self, model: type[Part], prefix: str) -> None:
         if model.rules or model.exactly_one:
             self.ruled.append((prefix, model))
 
     def _take(self, value: Any, key: str) -> None:
-        """A valid value; of a part, or a list of them, all that is in it."""
-        if isinstance(value, Part):
-            self.add(value, f"{key}.")
-            return
+        """A valid value that is no part; of a list of parts all that is in it."""
         self.values[key] = value
-        if isinstance(value, tuple | list) and value and isinstance(value[0], Part):
+        if type(value) is tuple and value and isinstance(value[0], Part):
             for number, item in enumerate(value):
                 self.add(item, f"{key}.{number}.")
+
+    def _take_valid(self, value: Any, key: str) -> None:
+        if isinstance(value, Part):
+            self.add(value, f"{key}.")
+        else:
+            self._take(value, key)
 
     def _add_valid(self, spot: Spot, model: type[Part], name: str, value: Any, key: str) -> None:
         chosen = spot.chosen(value)
@@ -127,7 +133,7 @@ class Values:
             elif chosen is not None and chosen.part is not None and isinstance(value, dict):
                 self.add_valid(chosen.part, value, f"{key}.")
             else:
-                self._take(model.field_from_text(name, value), key)
+                self._take_valid(model.field_from_text(name, value), key)
         except (ValueRefused, ValidationError):
             for number, item in enumerate(value if isinstance(value, list) else ()):
                 found = chosen.items.chosen(item) if chosen and chosen.items else None

@@ -49,7 +49,7 @@ class Short(Check):
         likely = Choice(tuple(self.known)).guess(value)
         if likely:
             raise ValueRefused(rule, plain(value), f"write `{likely}`")
-        in_full = f"`{self._in_full()}`"
+        in_full = f"`{_parts(self.whole)[0].sketch(samples=True)}`"
         if read is None or self.make is None:
             raise ValueRefused(rule, plain(value), f"write {one_of(tuple(self.known))}, or something such as {in_full}")
         try:
@@ -80,17 +80,6 @@ class Short(Check):
             return f"a mapping of {all_of(parts[0].model_fields)}"
         tag = next(name for name, entry in parts[0].model_fields.items() if get_origin(entry.annotation) is Literal)
         return f"a mapping with its `{tag}`"
-
-    def _in_full(self) -> str:
-        """An example of the mapping."""
-        written: list[str] = []
-        for name, entry in _parts(self.whole)[0].model_fields.items():
-            leaf = next((note for note in entry.metadata if isinstance(note, Leaf)), None)
-            if get_origin(entry.annotation) is Literal:
-                written.insert(0, f"{name}: {get_args(entry.annotation)[0]}")
-            elif entry.is_required():
-                written.append(f"{name}: {leaf.sample() if leaf else '...'}")
-        return f"{{{', '.join(written)}}}"
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return replace(self, whole=source)._before(source, handler)

@@ -65,16 +65,21 @@ class Spot:
 
     def at(self, data: Any, path: Path) -> Spot | None:
         """The spot at `path` of `data`, None where the schema has none."""
+        return [spot for spot, _ in self.way(data, path)][-1]
+
+    def way(self, data: Any, path: Path) -> Iterator[tuple[Spot | None, Any]]:
+        """Spot and value at every step to `path` of `data`, from this spot on."""
         spot: Spot | None = self
+        yield spot, data
         for step in path:
             spot = spot.inside(data, step) if spot else None
             data = value_at(data, (step,))
-        return spot
+            yield spot, data
 
     def part_at(self, data: Any, path: Path) -> type[Part] | None:
         """The model of the mapping at `path`, None where the schema has no mapping there."""
-        spot = self.at(data, path)
-        chosen = spot.chosen(value_at(data, path)) if spot else None
+        spot, value = list(self.way(data, path))[-1]
+        chosen = spot.chosen(value) if spot else None
         return chosen.part if chosen else None
 
     def inner(self, data: Any) -> Iterator[tuple[Path, Spot, Any]]:
@@ -122,15 +127,21 @@ class Spot:
         first, *others = self.parts.values()
         return [name for name in first.model_fields if all(name in part.model_fields for part in others)]
 
-    def places(self, name: str, prefix: Path = ()) -> Iterator[Path]:
-        """Paths at which the schema knows `name`: single values below the root, of a union what all branches share."""
+    def places(self, name: str, data: Any, prefix: Path = ()) -> Iterator[Path]:
+        """Paths at which the schema knows `name`: single values below the root, of a union what all branches share.
+
+        Parts that `data` does without, or that exclude one which it has, are no places.
+        """
         first = next(iter(self.parts.values()), None)
         part, known = (first, self.shared) if first else (self.part, list(self.part.model_fields if self.part else ()))
         for key in known if part else ():
             assert part is not None
-            spot = spot_of(part, key)
+            spot, value = spot_of(part, key), value_at(data, (key,))
+            if any(key in group and value_at(data, (other,)) for group in part.exactly_one for other in group):
+                continue
             if spot.part is not None or spot.parts:
-                yield from spot.places(name, (*prefix, key))
+                there = value is not None or part.model_fields[key].default is not None
+                yield from spot.places(name, value, (*prefix, key)) if there else ()
             elif key == part.field_of(name) and prefix:
                 yield (*prefix, name)
 

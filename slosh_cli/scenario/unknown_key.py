@@ -54,8 +54,8 @@ class UnknownKey:
         owners = [tag for tag, part in spot.parts.items() if self.name in part.every_key()]
         if owners:
             given += f", which belongs to {spot.key} {' or '.join(owners)}"
-        last = self.above[-1]
-        what = f"`{place}`," if isinstance(last, int) else f"{'an' if last[0] in 'aeiou' else 'a'} {last}"
+        last, named = str(self.above[-1]), self.root.part_at(self.data, self.above[:-1]) is not None
+        what = f"{'an' if last[0] in 'aeiou' else 'a'} {last}" if named else f"`{place}`,"
         return f"is not a key of {what} of {spot.key} {tag}", given
 
     def _fix_and_meant(self) -> tuple[str, Path]:
@@ -65,7 +65,7 @@ class UnknownKey:
         absent = {key.lower(): key for key in self.fields if self.part and not self.part.is_written(key, known)}
         near = _similar(self.name, tuple(absent))
         depth = len(self.above)
-        places = sorted(self.root.places(self.name), key=lambda place: place[:depth] != self.above)
+        places = sorted(self.root.places(self.name, self.data), key=lambda place: place[:depth] != self.above)
         elsewhere = [place for place in places if value_at(self.data, place) is None]
         if elsewhere:
             return f"move it to `{'.'.join(map(str, elsewhere[0]))}`", elsewhere[0]

@@ -118,5 +118,5 @@ def test_scenarios_in_terms_of_the_tree() -> None:
     names = {path: root.part_at(data, path) for path in [("tank",), ("tank", "baffles", 0), ("wagon", "bogie")]}
     assert [part.__name__ for part in names.values() if part] == ["Rectangular", "Baffle", "Bogie"]
     assert [path for path, spot, _ in root.inner(data) if spot.parts] == [("tank",)]
-    assert list(Spot(part=TankScenario).places("density")) == [("tank", "liquid", "density")]
-    assert list(Spot(part=TankScenario).places("radius")) == []
+    assert list(Spot(part=TankScenario).places("density", {})) == [("tank", "liquid", "density")]
+    assert list(Spot(part=TankScenario).places("radius", {})) == []
