@@ -18,7 +18,7 @@ from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.leaves import Leaf
 from slosh_cli.scenario.packaged import packaged_scenarios
-from slosh_cli.scenario.plain_data import plain_data, si_values, write_out
+from slosh_cli.scenario.plain_data import plain_data, si_values
 from slosh_cli.scenario.rules import Values
 from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.source import text_of
@@ -115,9 +115,7 @@ class Root(Part):
             if isinstance(value, str) and not (spot and isinstance(spot.leaf, Text)):
                 _override(document, type(self), key, value, key)
             else:
-                document.overrides.append(key)
-                _make_room(document, type(self), path)
-                document.replace(path, si_values(value), key)
+                _put(document, type(self), path, si_values(value), key)
         return document
 
 
@@ -180,27 +178,36 @@ def _is_writable(document: Document, key: str, place: str) -> bool:
 
 def _override(document: Document, model: type[Part], key: str, text: str, place: str) -> None:
     """Apply one override whose value is YAML text."""
-    document.overrides.append(place)
     if not isinstance(document.data, dict):
+        document.overrides.append(place)
         return
     path = tuple(key.split("."))
     value, problems = parse_override(text, path, place)
     document.problems += problems
     if value is None and problems:
+        document.overrides.append(place)
         return
-    write_out(model, document.data, document.normal(path))
-    _make_room(document, model, path)
-    document.replace(path, value, place)
+    _put(document, model, path, value, place)
 
 
-def _make_room(document: Document, model: type[Part], path: tuple[str, ...]) -> None:
-    """Where an override gives one of several keys that exclude each other, take the file's own out.
+def _put(document: Document, model: type[Part], path: tuple[str, ...], value: Any, place: str) -> None:
+    """Put the value of an override into the data, and make room for it.
 
-    Both stay where both come from overrides; that is refused like both in a file.
+    Parts on the way that are given in short, by a word or one value, are written out as mappings. Of keys that exclude
+    the one given, those of the file go; those of overrides stay and are refused like both in a file.
     """
-    place = document.normal(path)
-    for end, (spot, value) in enumerate(list(Spot(part=model).way(document.data, place[:-1]))):
-        chosen = spot.chosen(value) if spot and isinstance(value, dict) else None
+    document.overrides.append(place)
+    normal, root = document.normal(path), Spot(part=model)
+    ways = list(root.way(document.data, normal[:-1]))
+    for end, (spot, inner) in enumerate(ways):
+        part = spot.short.part(inner) if spot and spot.short else None
+        if part is not None:
+            ways[end - 1][1][normal[end - 1]] = plain_data(part, as_text=True)
+            ways = list(root.way(document.data, normal[:-1]))
+            break
+    for end, (spot, inner) in enumerate(ways):
+        chosen = spot.chosen(inner) if spot and isinstance(inner, dict) else None
         for other in chosen.part.rivals(path[end]) if chosen and chosen.part else ():
-            if not document.origin((*place[:end], other)).override:
-                document.remove((*place[:end], other))
+            if not document.origin((*normal[:end], other)).override:
+                document.remove((*normal[:end], other))
+    document.replace(path, value, place)

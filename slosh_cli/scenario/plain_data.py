@@ -6,9 +6,9 @@ from collections.abc import Collection
 from functools import cache
 from typing import Any
 
-from slosh_cli.scenario.base import Part, Path
+from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import SIValue
-from slosh_cli.scenario.tree import Spot, spot_of, value_at
+from slosh_cli.scenario.tree import Spot, spot_of
 
 
 def plain_data(part: Part, *, as_text: bool, kept: Collection[str] = ()) -> dict[str, Any]:
@@ -35,7 +35,8 @@ def _spots(model: type[Part]) -> tuple[tuple[str, Spot], ...]:
 def _plain(value: Any, spot: Spot | None, as_text: bool) -> Any:
     if isinstance(value, Part):
         return plain_data(value, as_text=as_text)
-    spot = spot.chosen(value) if spot else None
+    if spot is not None and spot.branches is not None:
+        spot = spot.chosen(value)
     if spot is not None and spot.leaf is not None:
         return spot.leaf.written(value, as_text=as_text)
     if isinstance(value, tuple | list):
@@ -56,14 +57,3 @@ def si_values(value: Any) -> Any:
     if isinstance(value, int | float) and not isinstance(value, bool):
         return SIValue(value)
     return value
-
-
-def write_out(model: type[Part], data: dict[str, Any], path: Path) -> None:
-    """Write every part on the way to `path` out as a mapping that `data` gives in short, by a word or one value.
-
-    An override is about to change one of its values.
-    """
-    for end, (spot, value) in enumerate(Spot(part=model).way(data, path[:-1])):
-        part = spot.short.part(value) if spot and spot.short else None
-        if part is not None:
-            value_at(data, path[: end - 1])[path[end - 1]] = plain_data(part, as_text=True)
