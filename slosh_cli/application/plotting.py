@@ -12,7 +12,7 @@ from slosh_cli.report import FIGURE_NAMES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from slosh_cli.report.record import Record
+    from slosh_cli.results.result import Record
     from slosh_cli.validation.case import CaseResult
 
     Figures = dict[str, Callable[[], Figure]]
@@ -62,7 +62,7 @@ def _run_figures(record: Record) -> Figures:
 
         return FIGURES[name](record)
 
-    return {name: partial(draw, name) for name in FIGURE_NAMES if name != "slosh" or record.liquid_model != "rigid"}
+    return {name: partial(draw, name) for name in FIGURE_NAMES if name != "slosh" or record.has_liquid}
 
 
 def case_figures(result: CaseResult) -> Figures:

@@ -79,14 +79,16 @@ def keep_run(result: Result, folder: Path, keeping: Keeping, *, figures: bool = 
 
     What an earlier run left in `folder` goes.
     """
+    from slosh_cli.results.answers import Shown
     from slosh_cli.results.hdf5 import write_history
-    from slosh_cli.results.tables import write_summary
+    from slosh_cli.results.tables import write_table
 
     def draw(name: str, folder: Path) -> None:
         from slosh_cli.report.figures import draw_run
 
         draw_run(result, folder, names=(name,))
 
-    numbers = {_SUMMARY: partial(write_summary, result), _HISTORY: partial(write_history, result)}
+    row = result.row(Shown.SUMMARY)
+    numbers = {_SUMMARY: partial(write_table, [row]), _HISTORY: partial(write_history, result)}
     drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
     return by_kind(keeping.keep(folder, _FILES, numbers, drawn), history=_HISTORY, summary=_SUMMARY)

@@ -29,7 +29,7 @@ def init_command(
         packaged_scenarios,
         packaged_text,
     )
-    from slosh_cli.scenario.leaves import file_safe
+    from slosh_cli.scenario.words import file_safe
 
     if names:
         say("\n".join(packaged_scenarios()))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
-from slosh_cli.scenario import Scenario, replace
+from slosh_cli.scenario import Scenario
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
 _LINEAR: Final = "modal"
@@ -69,7 +69,7 @@ def applies(study: Study, paper: Scenario) -> bool:
 
 
 def _same_wagon(base: Scenario, paper: Scenario) -> bool:
-    tank = replace(base, {LIQUID: str(paper.tank.liquid.model)}).tank
+    tank = base.with_({LIQUID: str(paper.tank.liquid.model)}).tank
     return (base.wagon, tank, base.track, base.contact) == (paper.wagon, paper.tank, paper.track, paper.contact)
 
 

@@ -10,8 +10,8 @@ from itertools import product
 from typing import Any, Final
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario import OutlivedCoefficientsError, Scenario, parse_quantity, replace
-from slosh_cli.scenario.given_modes import shapes_modes
+from slosh_cli.scenario import OutlivedCoefficientsError, Scenario, parse_quantity
+from slosh_cli.scenario.schema_modes import shapes_modes
 from slosh_cli.scenario.units import plain
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.key import stop_key
@@ -80,7 +80,7 @@ class Study:
         else:
             values["output.interval"] = _LONGEST_INTERVAL
         try:
-            scenario = replace(self.base, values)
+            scenario = self.base.with_(values)
         except ScenarioError as error:
             axes = {axis.key: axis for axis in self.axes}
             raise type(error)(self.file, [_placed(problem, axes) for problem in error.problems]) from None

@@ -20,9 +20,9 @@ from typing import Any, Final
 from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
 from slosh_cli.scenario import find_packaged, load_document
 from slosh_cli.scenario.document import Document
-from slosh_cli.scenario.leaves import NAME, file_safe
 from slosh_cli.scenario.source import text_of
 from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.words import NAME, file_safe
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values
 from slosh_cli.study.plan import LIQUID

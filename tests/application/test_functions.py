@@ -23,7 +23,7 @@ from slosh_cli.cli import main
 from slosh_cli.errors import ScenarioError, SloshError, UsageError
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Result
-from slosh_cli.scenario import Scenario, parse_quantity, replace
+from slosh_cli.scenario import Scenario, parse_quantity
 from slosh_cli.solver.run import Cancelled
 from slosh_cli.validation import registry
 
@@ -37,7 +37,7 @@ def paper() -> Scenario:
 
 @pytest.fixture(scope="module")
 def template(paper: Scenario) -> Result:
-    return plausible_run(replace(paper, {"braking.initial_speed": "5 km/h"}))
+    return plausible_run(paper.with_({"braking.initial_speed": "5 km/h"}))
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ def test_a_scenario_its_file_and_its_name_are_the_same_stop(quick: QuickSolver, 
 
 def test_progress_and_cancellation_come_in_as_callables(paper: Scenario) -> None:
     told: list[float] = []
-    result = simulate(replace(paper, {"braking.initial_speed": 5.0}), progress=lambda part, _: told.append(part))
+    result = simulate(paper.with_({"braking.initial_speed": 5.0}), progress=lambda part, _: told.append(part))
     assert result.braking_distance_m is not None
     assert told == sorted(told)
     now = Event()
@@ -125,7 +125,7 @@ def test_values_are_texts_or_si_numbers(quick: QuickSolver, paper: Scenario, tor
 
 def test_numbers_words_and_mappings_can_vary(quick: QuickSolver, paper: Scenario) -> None:
     creep = {"mu0": 0.2, "A": 0.4, "B": "0.6 s/m", "kA": 1.0, "kS": 0.4}
-    base = replace(paper, {"tank.coefficients": "computed"})
+    base = paper.with_({"tank.coefficients": "computed"})
     found = sweep(base, {"tank.fill": 0.4, "contact.adhesion": ["dry", creep], "tank.liquid.model": "modal"})
     assert [row["tank_fill"] for row in found.rows] == [0.4, 0.4]
     assert {scenario.contact.adhesion.mu0 for scenario in quick.scenarios} == {0.55, 0.2}

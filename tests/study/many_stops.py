@@ -12,7 +12,7 @@ from pathlib import Path
 
 from study_tools import CHEAP, count, journal_rows, run_slosh, start_slosh
 
-from slosh_cli.scenario import load_scenario, replace
+from slosh_cli.scenario import load_scenario
 from slosh_cli.study.outcome import solve
 from slosh_cli.study.plan import Stop
 
@@ -91,7 +91,7 @@ def check_table(folder: Path, stops: int) -> None:
             "braking.initial_speed": f"{row['v0_km_h']} km/h", "braking.torque": f"{row['torque_kN_m']} kN m",
             "tank.liquid.model": row["liquid"],
         }  # fmt: skip
-        answer = solve(Stop(0, "", replace(base, changes))).answer
+        answer = solve(Stop(0, "", base.with_(changes))).answer
         assert row["status"] == answer["status"]
         assert row["braking_distance_m"] == str(answer["braking_distance_m"] or "")
 
