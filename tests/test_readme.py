@@ -21,8 +21,6 @@ BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 SHELL = [text for kind, text in BLOCKS if kind in ("", "sh")]
 LINES = [line for text in SHELL for line in text.splitlines()]
 COMMANDS = [line.partition(" #")[0].strip() for line in LINES if line.startswith("slosh ")]
-MINUTES = {"slosh validate"}
-"""Commands that only `make test-all` runs."""
 CLUSTER = [text for text in SHELL if "--cluster" in text]
 ON_A_CLUSTER = [command for command in COMMANDS if "--cluster" in command]
 CACHE = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
@@ -118,14 +116,7 @@ def test_what_runs_here_is_the_wheel(installed: Path, tmp_path: Path) -> None:
     assert Path(found) == installed / "bin" / "slosh"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        pytest.param(command, marks=pytest.mark.slow if command in MINUTES else ())
-        for command in COMMANDS
-        if command not in ON_A_CLUSTER
-    ],
-)
+@pytest.mark.parametrize("command", [command for command in COMMANDS if command not in ON_A_CLUSTER])
 def test_every_command_works(folder: Path, installed: Path, command: str) -> None:
     outcome = run(folder, installed, "sh", "-c", command)
     assert outcome.returncode == 0, outcome.stderr
