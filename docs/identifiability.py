@@ -93,8 +93,8 @@ Every row is one study. The row of 9 m pivot spacing is
 
     slosh sweep --set 'wagon.pivot_spacing=9 m'
 
-The column `changed` of `identifiability.csv` has the keys of the other rows. `python docs/identifiability.py` makes all of
-them, this page, its figure and that file. Where a stop of a claim ends as `pitch-limit`, there is no answer.
+The column `changed` of `identifiability.csv` has the keys of the other rows. `python docs/identifiability.py` makes all
+of them, this page, its figure and that file. Where a stop of a claim ends as `pitch-limit`, there is no answer.
 """
 COLUMNS = (
     "varied", "value", *CLAIMS.values(), "best torque 80 km/h (solid) / kN m", "best torque 160 km/h (solid) / kN m",
