@@ -26,7 +26,6 @@ LONG_KERNELS = {
 
 DEFINED_AGAIN = {
     "compute": "every validation case has one: what the registry calls",
-    "register": "every module of a command has one: what adds the command to the program",
 }
 """Public names that several modules define, and why."""
 
