@@ -28,7 +28,7 @@ OTHER_CODES = "tests/benchmarks/bench_contestants.py"
 
 CODE = re.compile(r"```.*?```|^(?: {4}|\t)[^\n]*$|`[^`]+`|\]\([^)]*\)", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"(?<![\w.^_/])[-+]?\d+(?:[ \u00a0]\d{3}\b)*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
-NAME = re.compile(r"\b(?:Figure|Table|section|code|wheel) \d+")
+NAME = re.compile(r"\b(?:Figure|Table|section|code|[Ww]heel) \d+|^#+ \d+\.\d* ", re.MULTILINE)
 """Numbers that are names."""
 
 

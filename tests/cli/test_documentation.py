@@ -26,7 +26,7 @@ def _tree(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
 COMMANDS = dict(_tree(typer.main.get_command(tree())))
 
 
-def test_the_commands_are_those_of_the_contract() -> None:
+def test_the_commands_are_those_that_scripts_rely_on() -> None:
     assert {path[0] for path in COMMANDS if path} >= {"run", "check", "schema", "init", "plot"}
 
 
