@@ -29,12 +29,12 @@ def run_command(
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.stop import keep_run, run_folder
     from slosh_cli.cli.keeping import told
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.cli.summary import show_files, show_run
     from slosh_cli.results.result import Status
     from slosh_cli.scenario import load_scenario
 
-    scenario = read(load_scenario, scenario_file, overrides)
+    scenario = load_given(load_scenario, scenario_file, overrides)
     folder = run_folder(scenario, output, overrides, note)
     result = _simulate(scenario)
     stopped, keeping = result.status is Status.STOPPED, Keeping()
