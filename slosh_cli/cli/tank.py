@@ -83,7 +83,8 @@ def _excite(
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
-    from slosh_cli.application.excitation import excitation_folder, excited
+    from slosh_cli.application.excitation import EXCITATION_FILES, excited
+    from slosh_cli.application.keeping import folder_of_run
     from slosh_cli.application.prescription import Prescription
     from slosh_cli.cli.progress import announce_compilation
     from slosh_cli.cli.reading import load_given
@@ -91,7 +92,7 @@ def _excite(
 
     scenario = load_given(load_any_scenario, scenario_file, overrides)
     prescription = Prescription.read(deceleration, ramp, duration, table, interval, "--{}".format)
-    folder = excitation_folder(scenario, prescription, output, overrides, note)
+    folder = folder_of_run(scenario, output, overrides, EXCITATION_FILES, note, prescription.settings)
     if scenario.tank.liquid.model in _KERNELS:
         announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
     return _tell(excited(prescription, scenario), folder, as_json=as_json)
