@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
+from slosh_cli.application.keeping import Keeping, by_kind
 from slosh_cli.application.plotting import writers
 from slosh_cli.application.prescription import Amount, Prescription
 from slosh_cli.report import FORMATS
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 _TABLE: Final = "excite.csv"
 _HISTORY: Final = "excite.h5"
-_FILES: Final = (_TABLE, _HISTORY, *(f"excite.{suffix}" for suffix in FORMATS))
+EXCITATION_FILES: Final = (_HISTORY, _TABLE, *(f"excite.{suffix}" for suffix in FORMATS))
+"""Every file that an excitation may write, its history first."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,7 +132,7 @@ class ExcitationResult:
             _TABLE: lambda path: write_table(rows, path),
             _HISTORY: lambda path: write_excitation(self.scenario, found.time, channels, self._facts(), path),
         }
-        files = keeping.keep(folder, _FILES, numbers, writers(self.figures()))
+        files = keeping.keep(folder, EXCITATION_FILES, numbers, writers(self.figures()))
         return by_kind(files, table=_TABLE, history=_HISTORY)
 
     def _facts(self) -> dict[str, Any]:
@@ -187,25 +188,6 @@ def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tup
     advice = recommend(tank, found.largest_deceleration)
     motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=scenario.tank.fill < NEARLY_FULL)
     return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
-
-
-def excitation_folder(
-    scenario: Scenario | TankScenario,
-    prescription: Prescription,
-    given: Path | None,
-    settings: Sequence[str] | None,
-    note: Callable[[str], None],
-) -> Path:
-    """The folder of an excitation: that `given`, else one of its own, unless there lies the same; as for a run."""
-    from slosh_cli.results.files import try_targets
-    from slosh_cli.results.hdf5 import is_of
-
-    def fits(folder: Path) -> bool:
-        return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario, prescription.settings)
-
-    folder = given or free_folder(default_folder(scenario.name, settings), fits, note)
-    try_targets(folder, _FILES)
-    return folder
 
 
 def _columns(found: Excitation) -> dict[str, tuple[Channel, Vector]]:

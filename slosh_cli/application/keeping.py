@@ -5,9 +5,12 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.errors import SloshError
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario, TankScenario
 
 _OUTPUTS: Final = Path("outputs")
 _LONGEST: Final = 80
@@ -94,4 +97,29 @@ def free_folder(default: Path, fits: Callable[[Path], bool], note: Callable[[str
         folder = default.with_name(f"{default.name}-{number}")
     if folder != default:
         note(f"{default} holds the results of other settings; these go to {folder}")
+    return folder
+
+
+def folder_of_run(
+    scenario: "Scenario | TankScenario",
+    given: Path | None,
+    settings: Sequence[str] | None,
+    files: Sequence[str],
+    note: Callable[[str], None],
+    prescribed: str = "",
+) -> Path:
+    """The folder that takes `files`: that `given`, else one of its own, unless there lies a run of the same scenario.
+
+    The first of `files` is the history, which says what it is of; `prescribed` is what else tells it from others.
+    Raises FileError where the folder cannot take the files.
+    """
+    from slosh_cli.results.files import try_targets
+    from slosh_cli.results.hdf5 import is_of
+
+    def fits(folder: Path) -> bool:
+        history = folder / files[0]
+        return not history.exists() or is_of(history, scenario, prescribed)
+
+    folder = given or free_folder(default_folder(scenario.name, settings), fits, note)
+    try_targets(folder, files)
     return folder

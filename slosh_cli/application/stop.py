@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.application.keeping import Keeping, by_kind, default_folder, free_folder
+from slosh_cli.application.keeping import Keeping, by_kind
 from slosh_cli.report import FIGURE_NAMES, FORMATS
 from slosh_cli.scenario import Scenario, TankScenario, load_scenario
 
@@ -21,7 +20,8 @@ _HISTORY: Final = "run.h5"
 _SUMMARY: Final = "summary.csv"
 FIGURE_FILES: Final = tuple(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)
 """Every figure that a run may have, by the names of its files."""
-_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
+RUN_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
+"""Every file that a run may write, its history first."""
 
 
 def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recommendation]:
@@ -56,24 +56,6 @@ def simulate(
     return integrated(stop, progress=progress, cancel=cancel)
 
 
-def run_folder(
-    scenario: Scenario, given: Path | None, settings: Sequence[str] | None, note: Callable[[str], None]
-) -> Path:
-    """The folder of a run: that `given`, else one of its own, unless what lies there is a run of the same scenario.
-
-    Raises FileError where it cannot take the files.
-    """
-    from slosh_cli.results.files import try_targets
-    from slosh_cli.results.hdf5 import is_of
-
-    def fits(folder: Path) -> bool:
-        return not (folder / _HISTORY).exists() or is_of(folder / _HISTORY, scenario)
-
-    folder = given or free_folder(default_folder(scenario.name, settings), fits, note)
-    try_targets(folder, _FILES)
-    return folder
-
-
 def keep_run(result: Result, folder: Path, keeping: Keeping, *, figures: bool = True) -> dict[str, Any]:
     """Write history and summary of a run into `folder`, then its figures; returns where those lie that could be.
 
@@ -91,4 +73,4 @@ def keep_run(result: Result, folder: Path, keeping: Keeping, *, figures: bool = 
     row = result.row(Shown.SUMMARY)
     numbers = {_SUMMARY: partial(write_table, [row]), _HISTORY: partial(write_history, result)}
     drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
-    return by_kind(keeping.keep(folder, _FILES, numbers, drawn), history=_HISTORY, summary=_SUMMARY)
+    return by_kind(keeping.keep(folder, RUN_FILES, numbers, drawn), history=_HISTORY, summary=_SUMMARY)

@@ -12,11 +12,11 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     locked wheels or a liquid outside its model, is warned of.
     """
     from slosh_cli.application.stop import outlook
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.results.validity import plain, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
 
-    scenario = read(load_any_scenario, scenario_file, overrides)
+    scenario = load_given(load_any_scenario, scenario_file, overrides)
     kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
     verdicts, advice = outlook(scenario)
     warnings = warnings_of(verdicts)

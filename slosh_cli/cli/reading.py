@@ -10,7 +10,7 @@ from slosh_cli.errors import Problem, ScenarioError
 _S = TypeVar("_S")
 
 
-def read(load: Callable[[Path, Sequence[str]], _S], path: Path, overrides: Sequence[str] | None) -> _S:
+def load_given(load: Callable[[Path, Sequence[str]], _S], path: Path, overrides: Sequence[str] | None) -> _S:
     """Load the scenario of a stop, or of any kind, as `load` does.
 
     Raises ScenarioError, which for a missing file names the packaged scenario that may have been meant.

@@ -26,16 +26,16 @@ def run_command(
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.
     """
-    from slosh_cli.application.keeping import Keeping
-    from slosh_cli.application.stop import keep_run, run_folder
+    from slosh_cli.application.keeping import Keeping, folder_of_run
+    from slosh_cli.application.stop import RUN_FILES, keep_run
     from slosh_cli.cli.keeping import told
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.cli.summary import show_files, show_run
     from slosh_cli.results.result import Status
     from slosh_cli.scenario import load_scenario
 
-    scenario = read(load_scenario, scenario_file, overrides)
-    folder = run_folder(scenario, output, overrides, note)
+    scenario = load_given(load_scenario, scenario_file, overrides)
+    folder = folder_of_run(scenario, output, overrides, RUN_FILES, note)
     result = _simulate(scenario)
     stopped, keeping = result.status is Status.STOPPED, Keeping()
     if not as_json:

@@ -46,12 +46,12 @@ def _coefficients(
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.tank import COEFFICIENTS_TABLE, coefficients
     from slosh_cli.cli.keeping import files_text, told
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.cli.tank_output import show_coefficients
     from slosh_cli.results.files import try_targets
     from slosh_cli.scenario import load_any_scenario
 
-    scenario = read(load_any_scenario, scenario_file, overrides)
+    scenario = load_given(load_any_scenario, scenario_file, overrides)
     if output is not None:
         try_targets(output, (COEFFICIENTS_TABLE,))
     found, keeping = coefficients(scenario, modes), Keeping()
@@ -83,15 +83,16 @@ def _excite(
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
-    from slosh_cli.application.excitation import excitation_folder, excited
+    from slosh_cli.application.excitation import EXCITATION_FILES, excited
+    from slosh_cli.application.keeping import folder_of_run
     from slosh_cli.application.prescription import Prescription
     from slosh_cli.cli.progress import announce_compilation
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.scenario import load_any_scenario
 
-    scenario = read(load_any_scenario, scenario_file, overrides)
+    scenario = load_given(load_any_scenario, scenario_file, overrides)
     prescription = Prescription.read(deceleration, ramp, duration, table, interval, "--{}".format)
-    folder = excitation_folder(scenario, prescription, output, overrides, note)
+    folder = folder_of_run(scenario, output, overrides, EXCITATION_FILES, note, prescription.settings)
     if scenario.tank.liquid.model in _KERNELS:
         announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
     return _tell(excited(prescription, scenario), folder, as_json=as_json)
@@ -138,10 +139,10 @@ def _chart(
     from slosh_cli.application.tank import chart_fills, chart_folder
     from slosh_cli.cli.keeping import files_text, told
     from slosh_cli.cli.progress import counting
-    from slosh_cli.cli.reading import read
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.scenario import load_any_scenario
 
-    scenario = read(load_any_scenario, scenario_file, overrides)
+    scenario = load_given(load_any_scenario, scenario_file, overrides)
     levels = _read_fills(fills)
     folder = chart_folder(scenario, output, [*(overrides or ()), *([f"fills={fills}"] if fills != _ALL else [])])
     with counting("fillings") as progress:
