@@ -16,7 +16,7 @@ from typing import Any
 from slosh_cli.validation import registry
 from slosh_cli.validation.case import CaseResult
 from slosh_cli.validation.data_file import CaseData
-from slosh_cli.validation.markdown import manual_chapter, row_table, summary_sentence
+from slosh_cli.validation.markdown import cell, description, row_table, summary_sentence
 
 FOREIGN = re.compile(
     r"<(?:script|img|iframe|source|video)\b[^>]*\bsrc=[\"']?(?:https?:)?//[^\"'\s>]+"
@@ -40,7 +40,7 @@ documentation is built; `slosh validate` prints the same.
 @cache
 def result_of(name: str) -> CaseResult:
     """The result of a case, run once per build."""
-    return registry.run(registry.chosen([name])[0])
+    return registry.case_result(registry.chosen([name])[0])
 
 
 def manual(results: Sequence[CaseResult], left_out: Sequence[CaseData]) -> str:
@@ -58,10 +58,28 @@ def manual(results: Sequence[CaseResult], left_out: Sequence[CaseData]) -> str:
     lines += [f"| {catch.error} | {data.name} |" for data in every for catch in data.catches]
     lines.append("")
     for result in results:
-        lines.append(manual_chapter(result))
+        lines.append(chapter(result))
         if result.chart is not None:
             lines.append(f"![{result.data.title}](figures/{result.name}.png)\n")
     return "\n".join(lines)
+
+
+def chapter(result: CaseResult) -> str:
+    """A case as a chapter of the manual: description, tolerances, results, the errors that it catches."""
+    lines = [f"## {result.name}", "", *description(result.data), "", *tolerances_of(result.data)]
+    lines += ["", *row_table(result.rows)]
+    if result.data.catches:
+        lines += ["", "Deliberate errors that turn this case red (each is a test):", ""]
+        lines += [f"- {catch.error}" for catch in result.data.catches]
+    return "\n".join(lines) + "\n"
+
+
+def tolerances_of(data: CaseData) -> list[str]:
+    """The tolerances of a case and their reasons."""
+    lines = ["| tolerance | value | kind | reason |", "|---|---|---|---|"]
+    for key, entry in data.tolerances.items():
+        lines.append(f"| {key.replace('_', ' ')} | {entry.value:g} | {entry.kind} | {cell(entry.reason)} |")
+    return lines
 
 
 def with_rows(text: str, result: Callable[[str], CaseResult] = result_of) -> str:
@@ -81,16 +99,15 @@ def on_files(files: Any, config: Any) -> Any:
     """Add the validation manual and its figures to the site."""
     from mkdocs.structure.files import File
 
-    from slosh_cli.report.validation_figures import draw_case
+    from slosh_cli import plot
 
     results = [result_of(data.name) for data in registry.chosen([])]
     files.append(File.generated(config, "validation.md", content=manual(results, registry.left_out())))
     folder = Path(tempfile.mkdtemp(prefix="slosh-docs-"))
     for result in results:
-        if result.chart is not None:
-            draw_case(result.name, result.data.title, result.chart, folder)
-            image = (folder / f"{result.name}.png").read_bytes()
-            files.append(File.generated(config, f"figures/{result.name}.png", content=image))
+        for name in plot(result, folder):
+            image = (folder / f"{name}.png").read_bytes()
+            files.append(File.generated(config, f"figures/{name}.png", content=image))
     return files
 
 

@@ -86,17 +86,15 @@ FINDINGS = {
 HEADING = """# How far the paper's claims depend on what it does not publish
 
 The paper leaves open pivot spacing, heights, suspension, adhesion and whether 30.5 t is the car body or the whole tare.
-Here one value at a time is changed from what `scenarios/paper_80.yaml` assumes, and the same code judges the claims on
-the two stops of Figure 2 and on the grid of Figure 3. It is a finding, not a fit: nothing was adjusted to make a claim
-hold.
+Here one value at a time differs from what `scenarios/paper_80.yaml` assumes. The same code judges the claims on the two
+stops of Figure 2 and on the grid of Figure 3. This is a finding and no fit: no value was adjusted to make a claim hold.
 
 Every row is one study. The row of 9 m pivot spacing is
 
     slosh sweep --set 'wagon.pivot_spacing=9 m'
 
-and the others have in place of that key what the column `changed` of `identifiability.csv` says. All of them, this
-page, its figure and that file are made by `python docs/identifiability.py`. Where a stop that a claim is about ends as
-`pitch-limit`, there is no answer.
+The column `changed` of `identifiability.csv` has the keys of the other rows. `python docs/identifiability.py` makes all
+of them, this page, its figure and that file. Where a stop of a claim ends as `pitch-limit`, there is no answer.
 """
 COLUMNS = (
     "varied", "value", *CLAIMS.values(), "best torque 80 km/h (solid) / kN m", "best torque 160 km/h (solid) / kN m",
@@ -149,7 +147,7 @@ def page(rows: list[dict[str, Any]]) -> str:
 def conclusions(rows: list[dict[str, Any]]) -> list[str]:
     """What the table says, counted."""
     lines = [
-        f"In how many of the {len(rows)} rows each claim holds, and where the verdict is not that of the first row:"
+        f"How many of the {len(rows)} rows have each verdict, and which do not share the verdict of the first row:"
     ]
     lines += ["", "| claim | " + " | ".join(FINDINGS) + " | another verdict at |", "|" + "---|" * (2 + len(FINDINGS))]
     for claim, words in CLAIMS.items():

@@ -3,6 +3,8 @@
 from slosh_cli import load_scenario, simulate
 
 result = simulate(load_scenario("paper_80.yaml"))
+
+docs/python.md shows everything that is offered here.
 """
 
 from importlib import import_module
@@ -11,16 +13,30 @@ from typing import TYPE_CHECKING, Any
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
+    from slosh_cli.application.excitation import excite
+    from slosh_cli.application.plotting import plot
+    from slosh_cli.application.stop import simulate
+    from slosh_cli.application.studies import sweep
+    from slosh_cli.application.tank import coefficients
+    from slosh_cli.application.validation import validate
     from slosh_cli.results.result import Result
-    from slosh_cli.results.simulate import simulate
-    from slosh_cli.scenario import load_scenario
+    from slosh_cli.scenario import Scenario, load_scenario
 
-__all__ = ["Result", "__version__", "load_scenario", "simulate"]
+__all__ = [
+    "Result", "Scenario", "__version__", "coefficients", "excite", "load_scenario", "plot", "simulate", "sweep",
+    "validate",
+]  # fmt: skip
 
 _HOMES = {
     "Result": "slosh_cli.results.result",
+    "Scenario": "slosh_cli.scenario",
+    "coefficients": "slosh_cli.application.tank",
+    "excite": "slosh_cli.application.excitation",
     "load_scenario": "slosh_cli.scenario",
-    "simulate": "slosh_cli.results.simulate",
+    "plot": "slosh_cli.application.plotting",
+    "simulate": "slosh_cli.application.stop",
+    "sweep": "slosh_cli.application.studies",
+    "validate": "slosh_cli.application.validation",
 }
 
 

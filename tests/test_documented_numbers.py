@@ -19,7 +19,8 @@ from told_speed import FILLED, stops_of_speed
 from slosh_cli.cli import main
 
 DOCUMENTS = ["README.md", *(f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md")))]
-MADE_BY_A_SCRIPT = {"docs/identifiability.md"}  # compared with its table in test_validation_documents.py
+MADE_BY_A_SCRIPT = {"docs/answers.md", "docs/identifiability.md"}
+"""Compared with their tables in results/test_answers.py and validation/test_validation_documents.py."""
 PHRASES = tomllib.loads((ROOT / "tests/data/documented_numbers.toml").read_text(encoding="utf-8"))["phrase"]
 TABLE_OF_THE_PAGE = "the table of the page"
 PLAIN_CODE = "tests/acceptance/test_against_plain_code.py"
@@ -27,7 +28,7 @@ OTHER_CODES = "tests/benchmarks/bench_contestants.py"
 
 CODE = re.compile(r"```.*?```|^(?: {4}|\t)[^\n]*$|`[^`]+`|\]\([^)]*\)", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"(?<![\w.^_/])[-+]?\d+(?:[ \u00a0]\d{3}\b)*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
-NAME = re.compile(r"\b(?:Figure|Table|section|code|wheel) \d+")
+NAME = re.compile(r"\b(?:Figure|Table|section|code|[Ww]heel) \d+|^#+ \d+\.\d* ", re.MULTILINE)
 """Numbers that are names."""
 
 

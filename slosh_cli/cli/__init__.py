@@ -10,9 +10,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
     _hurry()
     _draw_without_windows()
-    from slosh_cli.cli.shell import run
+    from slosh_cli.cli.shell import execute
 
-    return run(arguments)
+    return execute(arguments)
 
 
 def _hurry() -> None:

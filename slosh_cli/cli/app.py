@@ -1,4 +1,7 @@
-"""The command tree. A new command is one module here of its own name, with a function `register(app)`."""
+"""The command tree. A new command NAME is a word in _COMMANDS and a module NAME here with a function NAME_command.
+
+What has commands of its own is a `typer.Typer` instead of a function.
+"""
 
 from importlib import import_module
 from typing import Annotated, Final
@@ -8,7 +11,7 @@ import typer
 from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
-COMMANDS: Final = ("init", "check", "run", "sweep", "tank", "plot", "schema", "validate")
+_COMMANDS: Final = ("init", "check", "run", "sweep", "tank", "plot", "schema", "validate")
 """In the order of the help."""
 
 _EPILOG: Final = (
@@ -17,7 +20,7 @@ _EPILOG: Final = (
 )
 
 
-def build(word: str = "") -> typer.Typer:
+def tree(word: str = "") -> typer.Typer:
     """The tree; where `word`, the first one given, is a command, that command alone: the others take time to set up."""
     # Plain help without markup: rich would take longer to load than everything else that --help needs.
     app = typer.Typer(
@@ -27,13 +30,17 @@ def build(word: str = "") -> typer.Typer:
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.callback(invoke_without_command=True)(slosh)
-    for command in (word,) if word in COMMANDS else COMMANDS:
-        import_module(f"slosh_cli.cli.{command}").register(app)
+    app.callback(invoke_without_command=True)(_slosh)
+    for command in (word,) if word in _COMMANDS else _COMMANDS:
+        found = getattr(import_module(f"slosh_cli.cli.{command}"), f"{command}_command")
+        if isinstance(found, typer.Typer):
+            app.add_typer(found, name=command)
+        else:
+            app.command(command)(found)
     return app
 
 
-def slosh(
+def _slosh(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
 ) -> None:

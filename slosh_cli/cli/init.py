@@ -6,31 +6,19 @@ from typing import Annotated, Final
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.options import option
 from slosh_cli.cli.output import say
 from slosh_cli.errors import UsageError
 
-DEFAULT: Final = "tank-wagon"
+_DEFAULT: Final = "tank-wagon"
+_FILE: Final = "File to write; the scenario takes its name. Default: its own name, in the current folder."
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("init")(init)
-
-
-def init(
+def init_command(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")
-    ] = DEFAULT,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="File to write; the scenario takes its name. Default: its own name, in the current folder.",
-            show_default=False,
-        ),
-    ] = None,
+    ] = _DEFAULT,
+    output: Annotated[Path | None, option("--output -o", "FILE", _FILE)] = None,
     names: Annotated[bool, typer.Option("--list", help="List the packaged scenarios and leave.")] = False,
 ) -> ExitCode:
     """Write a commented scenario to start from. Never overwrites a file."""
@@ -41,7 +29,7 @@ def init(
         packaged_scenarios,
         packaged_text,
     )
-    from slosh_cli.scenario.leaves import file_safe
+    from slosh_cli.scenario.words import file_safe
 
     if names:
         say("\n".join(packaged_scenarios()))

@@ -1,113 +1,26 @@
-"""What a command keeps besides the answer it tells: files that may fail one by one, and the folder they go to."""
+"""What a command says of the files it keeps."""
 
-import hashlib
 import os
-import re
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any
 
+from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain, note
-from slosh_cli.errors import SloshError
-
-OUTPUTS: Final = Path("outputs")
-_LONGEST: Final = 80
-"""Characters of a folder's name that tell what was set; more are told by a hash."""
+from slosh_cli.cli.output import complain
 
 
-class Keeping:
-    """The files of a command. One that fails costs itself alone: it is told, and the exit code shows it."""
-
-    def __init__(self) -> None:
-        self.failures: list[str] = []
-
-    @contextmanager
-    def part(self, what: str) -> Iterator[None]:
-        """Let the block write `what`; whatever goes wrong in it is noted and does not go further."""
-        try:
-            yield
-        except Exception as error:  # of any library: the answer is there, and must be told
-            if os.environ.get("SLOSH_DEBUG"):
-                traceback.print_exception(error)
-            first = error.__cause__ if isinstance(error.__cause__, OSError) else error
-            system = first.strerror if isinstance(first, OSError) else None
-            kind = "" if isinstance(error, SloshError | OSError) else f"{type(error).__name__}: "
-            self.failures.append(f"{what} could not be written: {kind}{system or error}")
-
-    def keep(
-        self,
-        folder: Path,
-        owned: Sequence[str],
-        together: Mapping[str, Callable[[Path], object]],
-        then: Mapping[str, Callable[[Path], object]],
-    ) -> list[str]:
-        """Write files into `folder`; returns those of the names `owned` that are there afterwards, as paths.
-
-        together: file name -> what writes it to a path; they appear at once, and what an earlier command left of
-        `owned` goes. then: figure -> what draws it into a folder, one after the other.
-        """
-        from slosh_cli.results.files import staging
-
-        begun = False
-        with self.part(str(folder)):
-            with staging(folder, owned=owned) as stage:
-                for name, write in together.items():
-                    with self.part(str(folder / name)):
-                        write(stage / name)
-            begun = True
-        if not begun:  # what lies there is of an earlier command, as it was
-            return []
-        for name, draw in then.items():
-            with self.part(f"the figure {folder / name}"):
-                draw(folder)
-        return [str(folder / name) for name in owned if (folder / name).is_file()]
-
-    def told(self, code: ExitCode = ExitCode.DONE) -> ExitCode:
-        """Tell what failed, on stderr; returns the exit code of the command, which would else be `code`."""
-        for failure in self.failures:
-            complain(f"error: {failure}")
-        return ExitCode.BAD_INPUT if self.failures and code is ExitCode.DONE else code
-
-
-def by_kind(files: Sequence[str], **kinds: str) -> dict[str, Any]:
-    """Files as the JSON object names them: `kinds` is kind -> file name, all others are figures."""
-    named = {kind: file for kind, name in kinds.items() for file in files if Path(file).name == name}
-    return named | {"figures": [file for file in files if file not in named.values()]}
+def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
+    """Tell what could not be kept, on stderr; returns the exit code of the command, which would else be `code`."""
+    if os.environ.get("SLOSH_DEBUG"):
+        for cause in keeping.causes:
+            traceback.print_exception(cause)
+    for failure in keeping.failures:
+        complain(f"error: {failure}")
+    return ExitCode.BAD_INPUT if keeping.failures and code is ExitCode.DONE else code
 
 
 def files_text(files: Mapping[str, Any]) -> str:
     """Where the files lie, a line per kind."""
     named = [f"  {kind:8} {file}" for kind, file in files.items() if kind != "figures"]
     return "\n".join(["", *named, *([f"  figures  {', '.join(files['figures'])}"] if files["figures"] else [])])
-
-
-def default_folder(name: str, settings: Sequence[str] | None) -> Path:
-    """``outputs/NAME``, or ``outputs/NAME-braking.torque=12-kN-m`` where `settings` (KEY=VALUE) were given.
-
-    Who sets the name says by it what the settings are.
-    """
-    by_key = {text.partition("=")[0].strip(): text.strip() for text in settings or ()}
-    told = sorted(text for key, text in by_key.items() if key != "description")
-    if not told or "name" in by_key:
-        return OUTPUTS / name
-    words = "-".join(re.sub(r"[^\w.=+,-]+", "-", text) for text in told)
-    if len(words) > _LONGEST:
-        words = f"{words[: _LONGEST - 9]}-{hashlib.sha256(' '.join(told).encode()).hexdigest()[:8]}"
-    return OUTPUTS / f"{name}-{words.rstrip('-.')}"
-
-
-def free_folder(default: Path, fits: Callable[[Path], bool]) -> Path:
-    """`default`, or it with a number where it holds the results of something else: nothing is overwritten.
-
-    `fits` says whether a folder is free for this work, or holds earlier results of the same.
-    """
-    number, folder = 1, default
-    while folder.exists() and not fits(folder):
-        number += 1
-        folder = default.with_name(f"{default.name}-{number}")
-    if folder != default:
-        note(f"{default} holds the results of other settings; these go to {folder}")
-    return folder

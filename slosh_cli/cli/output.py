@@ -1,4 +1,4 @@
-"""Where text goes: results to stdout, everything else to stderr, JSON in its strict form."""
+"""Where text goes: results to stdout, everything else to stderr, JSON in its _strict form."""
 
 import json
 import math
@@ -38,7 +38,7 @@ def complain(text: str) -> None:
 
 def say_json(value: Mapping[str, Any]) -> None:
     """Print one JSON object to stdout: plain ASCII, no NaN or infinity (null stands for them)."""
-    _to_stdout(json.dumps(strict(value), allow_nan=False, indent=2) + "\n")
+    _to_stdout(json.dumps(_strict(value), allow_nan=False, indent=2) + "\n")
 
 
 def show(*renderables: "RenderableType") -> None:
@@ -55,8 +55,8 @@ def show(*renderables: "RenderableType") -> None:
     _to_stdout(capture.get())
 
 
-def strict(value: Any) -> Any:
-    """A value as strict JSON knows it: numbers that are not finite become None, paths become strings.
+def _strict(value: Any) -> Any:
+    """A value as _strict JSON knows it: numbers that are not finite become None, paths become strings.
 
     Raises TypeError for what has no place in JSON.
     """
@@ -69,9 +69,9 @@ def strict(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
     if isinstance(value, Mapping):
-        return {str(key): strict(item) for key, item in value.items()}
+        return {str(key): _strict(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [strict(item) for item in value]
+        return [_strict(item) for item in value]
     raise TypeError(f"A value for JSON must be a plain Python value, but {type(value).__name__} was given.")
 
 

@@ -2,23 +2,28 @@
 
 import sys
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from slosh_cli.cli.output import note
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-PATIENCE: Final = 2.0
+_PATIENCE: Final = 2.0
 """Seconds before a bar appears: a shorter run needs none."""
 
-COMPILE_SECONDS: Final = 40
+_COMPILE_SECONDS: Final = 40
 """What compiling the time loop takes on an ordinary machine, in s."""
+
+_NOTE_SECONDS: Final = 60.0
+"""How often a study without a terminal says how far it is, s."""
 
 
 def announce_compilation(
-    what: str = "the solver", seconds: int = COMPILE_SECONDS, kernel: str = "advance.advance"
+    what: str = "the solver", seconds: int = _COMPILE_SECONDS, kernel: str = "advance.advance"
 ) -> None:
     """Say that this run takes longer when `kernel` was not compiled before, and whether it is once."""
     from slosh_cli.compiled import is_cached, not_kept
@@ -35,15 +40,13 @@ def announce_compilation(
         )
 
 
-class RunProgress:
-    """A progress bar for a run that takes longer than two seconds; silent when stderr is no terminal.
+class _Bar:
+    """A bar that appears on stderr when it is first drawn, and goes when the block ends."""
 
-    Call it with the fraction done (0 to 1) and the train's speed in m/s.
-    """
-
-    def __init__(self, description: str) -> None:
+    def __init__(self, description: str, *fields: str, counted: bool = True) -> None:
         self._description = description
-        self._started = time.monotonic()
+        self._fields = fields
+        self._counted = counted
         self._bar: Progress | None = None
         self._task: TaskID | None = None
 
@@ -56,30 +59,86 @@ class RunProgress:
         if self._bar is not None:
             self._bar.stop()
 
-    def __call__(self, fraction: float, speed: float) -> None:
+    def count(self, done: int, total: int, description: str | None = None) -> None:
+        """Show that `done` of `total` are finished, and what is in hand."""
+        self._draw(done, total, description=description or self._description)
+
+    def _draw(self, completed: float, total: float, **told: str) -> None:
         if self._bar is None:
-            if time.monotonic() - self._started < PATIENCE or not _somebody_watches():
-                return
-            self._bar = _bar()
-            self._task = self._bar.add_task(self._description, total=1.0, speed="")
+            self._bar = _rich_bar(*self._fields, counted=self._counted)
+            empty: dict[str, Any] = dict.fromkeys(self._fields, "")
+            self._task = self._bar.add_task(self._description, total=total, **empty)
             self._bar.start()
         assert self._task is not None
-        self._bar.update(self._task, completed=min(max(fraction, 0.0), 1.0), speed=f"{speed * 3.6:5.1f} km/h")
+        fields: dict[str, Any] = told
+        self._bar.update(self._task, completed=completed, **fields)
+
+
+class RunProgress(_Bar):
+    """A progress bar for a run that takes longer than two seconds; silent when stderr is no terminal.
+
+    Call it with the fraction done (0 to 1) and the train's speed in m/s.
+    """
+
+    def __init__(self, description: str) -> None:
+        super().__init__(description, "speed", counted=False)
+        self._started = time.monotonic()
+
+    def __call__(self, fraction: float, speed: float) -> None:
+        if self._bar is not None or (time.monotonic() - self._started >= _PATIENCE and _somebody_watches()):
+            self._draw(min(max(fraction, 0.0), 1.0), 1.0, speed=f"{speed * 3.6:5.1f} km/h")
+
+
+class StopsProgress(_Bar):
+    """A bar with rate and time left on a terminal, a line now and then elsewhere."""
+
+    def __init__(self, *, noted_every: float = _NOTE_SECONDS) -> None:
+        super().__init__("stops", "rate", "left")
+        self._every = noted_every
+        self._began = self._noted = time.monotonic()
+
+    def __call__(self, done: int, total: int) -> None:
+        """Show that `done` of `total` stops are finished."""
+        now = time.monotonic()
+        rate = done / max(now - self._began, 1e-9)
+        left = (total - done) / rate if done else None
+        if _somebody_watches():
+            told = {"rate": f"{rate:.1f}/s", "left": f"{duration(left)} left"} if done else {}
+            self._draw(done, total, **told)
+        elif done and done < total and now - self._noted >= self._every:
+            self._noted = now
+            note(f"{done} of {total} stops, {rate:.1f} per second, {duration(left)} left")
+
+
+@contextmanager
+def counting(description: str) -> Iterator[Callable[..., None]]:
+    """A bar on a terminal, silence elsewhere: call it with done, total and, if it changes, the description."""
+    with _Bar(description) as bar:
+        yield bar.count if _somebody_watches() else lambda *_: None
+
+
+def duration(seconds: float | None) -> str:
+    """Seconds as people say them: ``4 s``, ``12 min``, ``3.5 h``."""
+    if seconds is None:
+        return "an unknown time"
+    if seconds < 100.0:
+        return f"{max(seconds, 1.0):.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def _somebody_watches() -> bool:
     return sys.stderr.isatty()
 
 
-def _bar() -> "Progress":
+def _rich_bar(*fields: str, counted: bool) -> "Progress":
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[speed]}"),
+        MofNCompleteColumn() if counted else TaskProgressColumn(),
+        *(TextColumn(f"{{task.fields[{field}]}}") for field in fields),
         TimeElapsedColumn(),
         console=Console(stderr=True),
         transient=True,

@@ -1,44 +1,27 @@
 """Reading the scenario a command was given."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 from slosh_cli.errors import Problem, ScenarioError
 
-if TYPE_CHECKING:
-    from slosh_cli.scenario import Scenario, TankScenario
+_S = TypeVar("_S")
 
 
-def read_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario":
-    """Load the scenario of a stop.
+def load_given(load: Callable[[Path, Sequence[str]], _S], path: Path, overrides: Sequence[str] | None) -> _S:
+    """Load the scenario of a stop, or of any kind, as `load` does.
 
     Raises ScenarioError, which for a missing file names the packaged scenario that may have been meant.
     """
-    from slosh_cli.scenario import load_scenario
-
-    _check_exists(path)
-    return load_scenario(path, overrides or ())
-
-
-def read_any_scenario(path: Path, overrides: Sequence[str] | None) -> "Scenario | TankScenario":
-    """Load the scenario of a stop, or of a tank alone. Raises ScenarioError as `read_scenario` does."""
-    from slosh_cli.scenario import load_any_scenario
-
-    _check_exists(path)
-    return load_any_scenario(path, overrides or ())
-
-
-def _check_exists(path: Path) -> None:
-    """Name the packaged scenario that may have been meant by a file that does not exist."""
     from slosh_cli.scenario import packaged_scenarios
 
     if path.exists():
-        return
+        return load(path, overrides or ())
     names = {known: name for name, file in packaged_scenarios().items() for known in (name, file.stem, file.name)}
     for meant in get_close_matches(path.name, names, n=1, cutoff=0.7):
         name = names[meant]
         fix = f"`slosh init {name}` writes the packaged one to {name}.yaml, then `slosh run {name}.yaml`"
-        rule = "must be the path of a scenario file"
-        raise ScenarioError(str(path), [Problem(None, "", rule, "no such file", fix)])
+        raise ScenarioError(str(path), [Problem(None, "", "must be the path of a scenario file", "no such file", fix)])
+    return load(path, overrides or ())

@@ -1,31 +1,20 @@
 """`slosh run`: one stop, its history, its summary and its figures."""
 
 import threading
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.keeping import Keeping, by_kind, default_folder, free_folder
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile
-from slosh_cli.cli.output import complain, say_json, warn
+from slosh_cli.cli.output import complain, note, say_json, warn
 
 if TYPE_CHECKING:
     from slosh_cli.results.result import Result
     from slosh_cli.scenario import Scenario
 
-HISTORY: Final = "run.h5"
-SUMMARY: Final = "summary.csv"
 
-
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("run")(run)
-
-
-def run(
+def run_command(
     scenario_file: ScenarioFile,
     output: OutputFolder = None,
     overrides: Overrides = None,
@@ -37,19 +26,21 @@ def run(
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.
     """
-    from slosh_cli.cli.reading import read_scenario
+    from slosh_cli.application.keeping import Keeping, folder_of_run
+    from slosh_cli.application.stop import RUN_FILES, keep_run
+    from slosh_cli.cli.keeping import told
+    from slosh_cli.cli.reading import load_given
     from slosh_cli.cli.summary import show_files, show_run
-    from slosh_cli.results.files import try_targets
     from slosh_cli.results.result import Status
+    from slosh_cli.scenario import load_scenario
 
-    scenario = read_scenario(scenario_file, overrides)
-    folder = output or _default(scenario, overrides)
-    try_targets(folder, _files())
+    scenario = load_given(load_scenario, scenario_file, overrides)
+    folder = folder_of_run(scenario, output, overrides, RUN_FILES, note)
     result = _simulate(scenario)
     stopped, keeping = result.status is Status.STOPPED, Keeping()
     if not as_json:
         show_run(result)
-    files = write_run(result, folder, keeping, figures=not no_figures)
+    files = keep_run(result, folder, keeping, figures=not no_figures)
     if as_json:
         answer = result.summary()
         say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
@@ -59,50 +50,13 @@ def run(
             complain(f"{result.status}: {result.reason} {result.status.remedy}")
     else:
         show_files(files)
-    return keeping.told(ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
-
-
-def write_run(result: "Result", folder: Path, keeping: Keeping, *, figures: bool) -> dict[str, Any]:
-    """Write history and summary of a run into `folder`, then its figures; returns where those lie that could be.
-
-    What an earlier run left in `folder` goes.
-    """
-    from slosh_cli.report.record import FIGURE_NAMES
-    from slosh_cli.results.hdf5 import write_history
-    from slosh_cli.results.tables import write_summary
-
-    def draw(name: str, folder: Path) -> None:
-        from slosh_cli.report.figures import draw_run
-
-        draw_run(result, folder, names=(name,))
-
-    numbers = {SUMMARY: partial(write_summary, result), HISTORY: partial(write_history, result)}
-    drawn = {name: partial(draw, name) for name in FIGURE_NAMES if figures}
-    files = keeping.keep(folder, _files(), numbers, drawn)
-    return by_kind(files, history=HISTORY, summary=SUMMARY)
-
-
-def _files() -> list[str]:
-    """Names of all files that a run may write."""
-    from slosh_cli.report.record import FIGURE_NAMES, FORMATS
-
-    return [HISTORY, SUMMARY, *(f"{name}.{suffix}" for name in FIGURE_NAMES for suffix in FORMATS)]
-
-
-def _default(scenario: "Scenario", overrides: list[str] | None) -> Path:
-    """The folder of a run that was given none: of its own, unless what lies there is a run of the same scenario."""
-    from slosh_cli.results.hdf5 import is_of
-
-    def fits(folder: Path) -> bool:
-        return not (folder / HISTORY).exists() or is_of(folder / HISTORY, scenario)
-
-    return free_folder(default_folder(scenario.name, overrides), fits)
+    return told(keeping, ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
 
 
 def _simulate(scenario: "Scenario") -> "Result":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
+    from slosh_cli.application.stop import simulate
     from slosh_cli.cli.progress import RunProgress, announce_compilation
-    from slosh_cli.results.simulate import simulate
 
     announce_compilation()
     cancel = threading.Event()

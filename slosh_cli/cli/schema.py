@@ -9,29 +9,24 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import say_json
 
 
-class FileKind(StrEnum):
+class _FileKind(StrEnum):
     """What a file describes."""
 
     SCENARIO = "scenario"
     STUDY = "study"
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("schema")(schema)
-
-
-def schema(
+def schema_command(
     kind: Annotated[
-        FileKind,
+        _FileKind,
         typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone) or `study`."),
-    ] = FileKind.SCENARIO,
+    ] = _FileKind.SCENARIO,
 ) -> ExitCode:
     """Print the JSON Schema of a scenario, or of a study.
 
     An editor that knows it completes and checks files while they are written.
     """
-    if kind is FileKind.STUDY:
+    if kind is _FileKind.STUDY:
         from slosh_cli.study.study_schema import study_schema
 
         say_json(study_schema())

@@ -10,16 +10,16 @@ from typing import Final
 
 import typer
 
-from slosh_cli.cli.app import build
+from slosh_cli.cli.app import tree
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import close_stdout, complain, flush_streams, open_streams, refused, say_json
 from slosh_cli.errors import ScenarioError, SloshError
 
-DEBUG: Final = "SLOSH_DEBUG"
+_DEBUG: Final = "SLOSH_DEBUG"
 """Environment variable: when set, an unexpected error shows its traceback."""
 
 
-def run(arguments: Sequence[str] | None = None) -> int:
+def execute(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     before_dashes = words[: words.index("--")] if "--" in words else words
@@ -47,7 +47,7 @@ def _told(code: int) -> int:
 def _run(words: list[str]) -> int:
     """Run one command; a broken pipe on the way is the reader's choice and no error."""
     try:
-        code = typer.main.get_command(build(*words[:1])).main(args=words, prog_name="slosh", standalone_mode=False)
+        code = typer.main.get_command(tree(*words[:1])).main(args=words, prog_name="slosh", standalone_mode=False)
     except (SystemExit, BrokenPipeError) as end:
         if isinstance(end, BrokenPipeError) or isinstance(end.__context__, OSError):
             close_stdout()
@@ -77,12 +77,12 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
         text = f"error: {wording()}\nSee `{command} --help`."
         _say_error(text, as_json, code="usage", message=wording(), where=command)
         return ExitCode.BAD_INPUT
-    if os.environ.get(DEBUG):
+    if os.environ.get(_DEBUG):
         traceback.print_exception(error)
     message = f"{type(error).__name__}: {error}"
     text = (
         f"slosh failed on its own account: {message}\n"
-        f"Please report this with the command and the scenario; {DEBUG}=1 makes slosh show where it happened."
+        f"Please report this with the command and the scenario; {_DEBUG}=1 makes slosh show where it happened."
     )
     _say_error(text, as_json, code="internal", message=message, where="")
     return ExitCode.NO_ANSWER

@@ -1,11 +1,12 @@
 """The terminal summary of a run."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.output import say, show
+from slosh_cli.results.answers import Answer, Line, PerWheel
 from slosh_cli.results.channels import WHEELS
 from slosh_cli.results.result import Result, Status
 
@@ -35,45 +36,57 @@ def _facts(result: Result) -> "Table":
 
     table = Table.grid(padding=(0, 2))
     table.title, table.title_justify, table.title_style = _title(result), "left", "bold"
-    for quantity, value in fact_rows(result):
-        table.add_row(quantity, value)
+    for one, line in _lines(per_wheel=False):
+        text = _WORDS[one.name](result, line) if one.name in _WORDS else _text(getattr(result, one.name), line)
+        if text:
+            table.add_row(line.label, text)
     return table
 
 
-def fact_rows(result: Result) -> list[tuple[str, str]]:
-    """Quantity and value of everything that holds for the run as a whole."""
-    liquid = result.liquid_model != "rigid"
-    surface = f"{_number(result.max_surface_m, '.2f', 'm')} (room: {_number(result.surface_limit_m, '.2f', 'm')})"
-    return [
-        ("status", str(result.status)),
-        ("braking distance", _number(result.braking_distance_m, ".2f", "m")),
-        ("braking time", _number(result.braking_time_s, ".2f", "s")),
-        *([("surface rise at an end wall, largest", surface)] if liquid else []),
-        ("within the range of its model", _range(result)),
-        *([("model of the liquid that suits", _suiting(result))] if result.recommendation else []),
-        ("wheel unloading, largest", _number(100.0 * result.max_wheel_unloading, ".1f", "% (usual limit: 60 %)")),
-        ("mean sum of wheel loads / weight - 1", _number(_excess(result), ".1e")),
-        ("energy ledger, largest residual", _number(result.energy_residual, ".1e", "of the initial energy")),
-        ("steps", f"{result.steps} accepted, {result.rejected_steps} rejected"),
-        (
-            "solver time",
-            f"{result.solve_seconds:.2f} s, {result.microseconds_per_step:.0f} microseconds per step",
-        ),
-    ]
+def _lines(*, per_wheel: bool) -> list[tuple[Answer, Line]]:
+    """The answers that the terminal shows, in its order."""
+    found = [(one, one.line) for one in Result.table() if one.line and (one.kind == PerWheel) == per_wheel]
+    return sorted(found, key=lambda pair: pair[1].at)
 
 
-def _range(result: Result) -> str:
+def _text(value: Any, line: Line) -> str:
+    if not line.form:
+        return str(value)
+    if value is None or not math.isfinite(value):
+        return "-"
+    return f"{value / line.per:{line.form}} {line.unit}".rstrip()
+
+
+def _surface(result: Result, line: Line) -> str:
+    room = f"(room: {_text(result.surface_limit_m, line)})"
+    return f"{_text(result.max_surface_m, line)} {room}" if result.has_liquid else ""
+
+
+def _range(result: Result, _: Line) -> str:
     """Yes, or the checks that say no."""
     outside = [check.name for check in result.checks if check.kind == "model" and not check.within]
     return f"no: {', '.join(outside)}" if outside else "yes"
 
 
-def _suiting(result: Result) -> str:
+def _suiting(result: Result, _: Line) -> str:
     """The recommended model, with the expected errors of the force on the tank where it is another one."""
     advice = result.recommendation
-    if advice is None or advice.model == result.liquid_model:
+    if advice is None:
+        return ""
+    if advice.model == result.liquid_model:
         return "the one in use"
     return f"{advice.model} (expected error of the force {advice.errors} of mass times deceleration)"
+
+
+_WORDS: Final[Mapping[str, Callable[[Result, Line], str]]] = {
+    "max_surface_m": _surface,
+    "in_model_range": _range,
+    "recommendation": _suiting,
+    "mean_total_wheel_load_N": lambda run, line: _text(run.mean_total_wheel_load_N / run.weight_N - 1.0, line),
+    "steps": lambda run, _: f"{run.steps} accepted, {run.rejected_steps} rejected",
+    "solve_seconds": lambda run, _: f"{run.solve_seconds:.2f} s, {run.microseconds_per_step:.0f} microseconds per step",
+}
+"""What the terminal says of an answer where it is more than its number; nothing where that is empty."""
 
 
 def _wheels(result: Result) -> "Table":
@@ -81,49 +94,18 @@ def _wheels(result: Result) -> "Table":
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    for column in ("wheel", "at rest / kN", "least / kN", "most / kN", "unloading / %", "locked / s"):
+    found = _lines(per_wheel=True)
+    for column in ("wheel", *(line.label for _, line in found)):
         table.add_column(column, justify="right")
-    for row in wheel_rows(result):
-        table.add_row(*row)
+    columns = [[f"{value / line.per:{line.form}}" for value in getattr(result, one.name)] for one, line in found]
+    for i, *cells in zip(WHEELS, *columns, strict=True):
+        table.add_row(str(i), *cells)
     return table
-
-
-def wheel_rows(result: Result) -> list[Sequence[str]]:
-    """Per wheel: number, load at rest, least and most load, unloading, time locked."""
-    columns = zip(
-        WHEELS,
-        result.static_wheel_load_N,
-        result.min_wheel_load_N,
-        result.max_wheel_load_N,
-        result.locked_time_s,
-        strict=True,
-    )
-    return [
-        (
-            str(i),
-            f"{rest / 1e3:.1f}",
-            f"{least / 1e3:.1f}",
-            f"{most / 1e3:.1f}",
-            f"{100.0 * (1.0 - least / rest):.1f}",
-            f"{locked:.2f}",
-        )
-        for i, rest, least, most, locked in columns
-    ]
 
 
 def _title(result: Result) -> str:
     speed, torque = result.initial_speed_m_s * 3.6, result.torque_N_m / 1e3
     return f"{result.name}: {speed:.4g} km/h, {torque:.4g} kN m per wheel, load: {result.liquid_model}"
-
-
-def _excess(result: Result) -> float:
-    return result.mean_total_wheel_load_N / result.weight_N - 1.0
-
-
-def _number(value: float | None, form: str, unit: str = "") -> str:
-    if value is None or not math.isfinite(value):
-        return "-"
-    return f"{value:{form}} {unit}".rstrip()
 
 
 def _where(files: Mapping[str, Any]) -> str:

@@ -8,105 +8,48 @@ from typing import Annotated, Final
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson, Overrides
+from slosh_cli.cli.options import AsJson, Overrides, option
 from slosh_cli.errors import UsageError
 
-ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+_ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that keep linear algebra to the thread that calls it: the stops share the cores among them already."""
 
-ScenarioOrStudy = Annotated[
-    Path | None,
-    typer.Argument(
-        metavar="SCENARIO",
-        help="Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper.",
-        show_default=False,
-    ),
-]
-Speeds = Annotated[
-    str | None,
-    typer.Option(
-        "--v0",
-        metavar="LIST",
-        help="Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary alone, "
-        "the scenario's own.",
-        show_default=False,
-    ),
-]
-Torques = Annotated[
-    str | None,
-    typer.Option(
-        "--torque",
-        metavar="LIST",
-        help="Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both "
-        "ends in); with --vary alone, the scenario's own.",
-        show_default=False,
-    ),
-]
-Vary = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--vary",
-        metavar="KEY=LIST",
-        help="Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m', "
-        "--vary contact.adhesion=dry,wet. May be repeated.",
-        show_default=False,
-    ),
-]
-Liquids = Annotated[
-    str | None,
-    typer.Option(
-        "--liquid",
-        metavar="LIST",
-        help="Models of the load. Default: the scenario's own (the paper's: modal) and rigid.",
-        show_default=False,
-    ),
-]
-StudyFolder = Annotated[
-    Path | None,
-    typer.Option(
-        "--output",
-        "-o",
-        metavar="DIR",
-        help="Folder of the study. Default: outputs/, the study's name and what was --set.",
-        show_default=False,
-    ),
-]
-Jobs = Annotated[
-    int | None,
-    typer.Option("--jobs", metavar="N", min=1, help="Threads. Default: one per core.", show_default=False),
-]
-ClusterAddress = Annotated[
-    str | None,
-    typer.Option(
-        "--cluster",
-        metavar="ADDRESS",
-        help="Compute on the workers of a Dask scheduler, tcp://host:8786 (needs Dask).",
-        show_default=False,
-    ),
-]
-Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
-Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
+_FILE: Final = "Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
+_ScenarioOrStudy = Annotated[Path | None, typer.Argument(metavar="SCENARIO", help=_FILE, show_default=False)]
+_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary
+alone, the scenario's own."""
+_Speeds = Annotated[str | None, option("--v0", "LIST", _SPEEDS)]
+_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both
+ends in); with --vary alone, the scenario's own."""
+_Torques = Annotated[str | None, option("--torque", "LIST", _TORQUES)]
+_VARY: Final = """Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m',
+--vary contact.adhesion=dry,wet. May be repeated."""
+_Vary = Annotated[list[str] | None, option("--vary", "KEY=LIST", _VARY)]
+_LIQUIDS: Final = "Models of the load. Default: the scenario's own (the paper's: modal) and rigid."
+_Liquids = Annotated[str | None, option("--liquid", "LIST", _LIQUIDS)]
+_FOLDER: Final = "Folder of the study. Default: outputs/, the study's name and what was --set."
+_StudyFolder = Annotated[Path | None, option("--output -o", "DIR", _FOLDER)]
+_Jobs = Annotated[int | None, option("--jobs", "N", "Threads. Default: one per core.", min=1)]
+_CLUSTER: Final = "Compute on the workers of a Dask scheduler, tcp://host:8786 (needs Dask)."
+_ClusterAddress = Annotated[str | None, option("--cluster", "ADDRESS", _CLUSTER)]
+_Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
+_Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
+_DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("sweep")(sweep)
-
-
-def sweep(
-    scenario_file: ScenarioOrStudy = None,
-    speeds: Speeds = None,
-    torques: Torques = None,
-    vary: Vary = None,
-    liquids: Liquids = None,
+def sweep_command(
+    scenario_file: _ScenarioOrStudy = None,
+    speeds: _Speeds = None,
+    torques: _Torques = None,
+    vary: _Vary = None,
+    liquids: _Liquids = None,
     overrides: Overrides = None,
-    output: StudyFolder = None,
-    jobs: Jobs = None,
-    cluster: ClusterAddress = None,
-    histories: Histories = False,
-    fresh: Fresh = False,
-    dry_run: DryRun = False,
+    output: _StudyFolder = None,
+    jobs: _Jobs = None,
+    cluster: _ClusterAddress = None,
+    histories: _Histories = False,
+    fresh: _Fresh = False,
+    dry_run: _DryRun = False,
     as_json: AsJson = False,
 ) -> ExitCode:
     """Run a grid of stops and compare liquid with solid (Figure 3).
@@ -115,14 +58,16 @@ def sweep(
     extended computes only what is new. Without -o another study of the same name gets a folder with a number.
     """
     began = time.perf_counter()
-    for variable in ONE_THREAD:
+    for variable in _ONE_THREAD:
         os.environ[variable] = "1"
-    from slosh_cli.cli.sweep_task import Task, default_folder_of, estimate, run
+    from slosh_cli.application.studies import study_folder
+    from slosh_cli.cli.output import note
+    from slosh_cli.cli.sweep_task import Task, carry_out, estimate
     from slosh_cli.study.build import Wishes, build
 
     if jobs is not None and cluster is not None:
         raise UsageError("--jobs is for this machine; a cluster has its own threads: leave one of them out", "--jobs")
     study = build(Wishes(scenario_file, overrides or (), speeds, torques, vary or (), liquids, histories))
-    folder = output or default_folder_of(study, overrides or ())
+    folder = study_folder(study, output, overrides, note)
     task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began)
-    return estimate(task) if dry_run else run(task)
+    return estimate(task) if dry_run else carry_out(task)

@@ -2,12 +2,13 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
 
-from slosh_cli.cli.output import say, show
-from slosh_cli.cli.sweep_figures import name_of, text_of, unit_of
+from slosh_cli.cli.output import complain, note, say, show
+from slosh_cli.report.study_pages import name_of, unit_of, value_text
+from slosh_cli.results.result import Status
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 from slosh_cli.study.table import TABLE
@@ -17,9 +18,9 @@ if TYPE_CHECKING:
 
     from slosh_cli.study.claims import Verdict
 
-Row = Mapping[str, Any]
+_Row = Mapping[str, Any]
 
-MOST_LINES: Final = 60
+_MOST_LINES: Final = 60
 """Points of a table on the terminal; a larger study is read from its file."""
 _EXAMPLES: Final = 4
 """Stops named in a group of failures."""
@@ -41,9 +42,9 @@ def _span(axis: Axis) -> str:
     return f"{axis.values[0]} to {axis.values[-1]} ({len(axis.values)} values)"
 
 
-def show_study(study: Study, rows: Iterable[Row]) -> None:
+def show_study(study: Study, rows: Iterable[_Row]) -> None:
     """Print the table and the most effective torques, to stdout."""
-    rows = list(rows) if _lines(study) <= MOST_LINES else []
+    rows = list(rows) if _lines(study) <= _MOST_LINES else []
     if rows:
         show(_table(study, rows))
         say(_legend(rows))
@@ -62,9 +63,25 @@ def claim_text(verdicts: Mapping[str, Sequence["Verdict"]]) -> str:
     return "\n".join(lines)
 
 
-def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
+def tell_troubles(study: Study, rows: Callable[[], Iterable[_Row]], counts: Mapping[Status, int]) -> None:
+    """Tell what lies outside the limits of a check, and what ended without an answer, on stderr.
+
+    `counts` says how many stops ended how; only those that failed are complained of.
+    """
+    outside = _verdict_lines(rows())
+    if outside:
+        note("\n".join(outside))
+    written = sum(counts.values())
+    unanswered = written - counts.get(Status.STOPPED, 0)
+    if unanswered:
+        tell = complain if any(status.is_failure for status in counts) else note
+        lines = _failure_lines(study, rows())
+        tell("\n".join([f"{unanswered} of {written} stops ended without an answer:", *lines]))
+
+
+def _failure_lines(study: Study, rows: Iterable[_Row]) -> list[str]:
     """What went wrong, grouped by cause: how often, why, where."""
-    groups: dict[tuple[str, str], list[Row]] = {}
+    groups: dict[tuple[str, str], list[_Row]] = {}
     for row in rows:
         if row["status"] != "stopped":
             cause = _NUMBER.sub("#", str(row.get("reason") or ""))
@@ -79,7 +96,7 @@ def failure_lines(study: Study, rows: Iterable[Row]) -> list[str]:
     return lines
 
 
-def verdict_lines(rows: Iterable[Row]) -> list[str]:
+def _verdict_lines(rows: Iterable[_Row]) -> list[str]:
     """How many stops each check warns of, most first; the warnings themselves are in the table."""
     counts: Counter[str] = Counter()
     stops = 0
@@ -90,8 +107,8 @@ def verdict_lines(rows: Iterable[Row]) -> list[str]:
     return [f"outside the limits of a check (see not_within and warnings in {TABLE}):", *found] if found else []
 
 
-def _where(study: Study, row: Row) -> str:
-    return ", ".join(text_of(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
+def _where(study: Study, row: _Row) -> str:
+    return ", ".join(value_text(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
 
 
 def _lines(study: Study) -> int:
@@ -105,7 +122,7 @@ def _told(study: Study) -> list[Axis]:
     return [axis for axis in study.axes if axis.key != LIQUID and (len(axis.values) > 1 or axis.key in (SPEED, TORQUE))]
 
 
-def _table(study: Study, rows: Sequence[Row]) -> "Table":
+def _table(study: Study, rows: Sequence[_Row]) -> "Table":
     from rich import box
     from rich.table import Table
 
@@ -120,17 +137,17 @@ def _table(study: Study, rows: Sequence[Row]) -> "Table":
     for name, unit in heads:
         table.add_column(f"{name}\n{unit}", justify="right", no_wrap=True)
     best = _best(rows, _curve_of(study))
-    for _, group in groupby(rows, key=lambda row: tuple(text_of(axis, row) for axis in axes)):
+    for _, group in groupby(rows, key=lambda row: tuple(value_text(axis, row) for axis in axes)):
         point = {str(row["liquid"]): row for row in group}
         first = next(iter(point.values()))
-        cells = [text_of(axis, first).removesuffix(unit_of(axis)).strip() for axis in axes]
+        cells = [value_text(axis, first).removesuffix(unit_of(axis)).strip() for axis in axes]
         cells += [_distance(point.get(model), best) for model in models]
         cells += [_ratio(point.get(model)) for model in liquids if SOLID in models]
         table.add_row(*cells)
     return table
 
 
-def _distance(row: Row | None, best: Sequence[Row]) -> str:
+def _distance(row: _Row | None, best: Sequence[_Row]) -> str:
     if row is None:
         return "-"
     distance = row.get("braking_distance_m")
@@ -141,12 +158,12 @@ def _distance(row: Row | None, best: Sequence[Row]) -> str:
     return f"{mark}{outside} {distance:.2f}".strip()
 
 
-def _ratio(row: Row | None) -> str:
+def _ratio(row: _Row | None) -> str:
     ratio = None if row is None else row.get("ratio_to_solid")
     return "-" if ratio is None else f"{ratio:.4f}"
 
 
-def _legend(rows: Sequence[Row]) -> str:
+def _legend(rows: Sequence[_Row]) -> str:
     words = "* shortest of its curve"
     outside = any(row.get("braking_distance_m") is not None and not row.get("liquid_in_range") for row in rows)
     return words + ("   o outside the range of the liquid's theory (see warnings in the table)" if outside else "")
@@ -161,25 +178,25 @@ def _curve_of(study: Study) -> list[Axis]:
     return [axis for axis in study.axes if axis is not along]
 
 
-def _best(rows: Sequence[Row], axes: Sequence[Axis]) -> list[Row]:
+def _best(rows: Sequence[_Row], axes: Sequence[Axis]) -> list[_Row]:
     """The shortest stop of every curve."""
-    curves: dict[tuple[str, ...], Row] = {}
+    curves: dict[tuple[str, ...], _Row] = {}
     for row in rows:
         if row.get("braking_distance_m") is None:
             continue
-        key = tuple(text_of(axis, row) for axis in axes)
+        key = tuple(value_text(axis, row) for axis in axes)
         if key not in curves or row["braking_distance_m"] < curves[key]["braking_distance_m"]:
             curves[key] = row
     return list(curves.values())
 
 
-def _best_lines(study: Study, rows: Sequence[Row]) -> list[str]:
+def _best_lines(study: Study, rows: Sequence[_Row]) -> list[str]:
     torques = next((axis for axis in study.axes if axis.key == TORQUE), None)
     if torques is None or len(torques.values) < _FEWEST:
         return []
     axes = [axis for axis in _curve_of(study) if len(axis.values) > 1]
     lines = ["most effective torque:"]
     for row in _best(rows, _curve_of(study)):
-        where = ", ".join(text_of(axis, row) for axis in axes)
+        where = ", ".join(value_text(axis, row) for axis in axes)
         lines.append(f"  {where}: {row['torque_kN_m']:g} kN m, {row['braking_distance_m']:.2f} m")
     return lines

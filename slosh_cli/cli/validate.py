@@ -1,17 +1,13 @@
 """`slosh validate`: every claim of the program held against something it did not compute."""
 
-import sys
 from collections.abc import Sequence
-from functools import partial
-from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.keeping import OUTPUTS, Keeping, by_kind
-from slosh_cli.cli.options import AsJson
+from slosh_cli.cli.options import AsJson, option
 from slosh_cli.cli.output import note, say, say_json, show
 
 if TYPE_CHECKING:
@@ -20,40 +16,23 @@ if TYPE_CHECKING:
     from slosh_cli.validation.case import CaseResult
     from slosh_cli.validation.data_file import CaseData
 
-REPORT: Final = "report.md"
-FOLDER: Final = OUTPUTS / "validation"
-_LONGEST: Final = 80
-"""Characters of a folder's name that names the cases."""
+_FOLDER: Final = "Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs."
 
 
-def register(app: typer.Typer) -> None:
-    """Add the command to the tree."""
-    app.command("validate")(validate)
-
-
-def validate(
+def validate_command(
     names: Annotated[
         list[str] | None,
         typer.Argument(metavar="[NAME]...", help="Cases to run; all without a name.", show_default=False),
     ] = None,
     as_json: AsJson = False,
     list_only: Annotated[bool, typer.Option("--list", help="Name the cases and what they ask, run none.")] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="DIR",
-            help="Folder for report and figures. Default: outputs/validation, in it a folder of its own for NAMEs.",
-            show_default=False,
-        ),
-    ] = None,
+    output: Annotated[Path | None, option("--output -o", "DIR", _FOLDER)] = None,
 ) -> ExitCode:
     """Check the program against published and exact results.
 
     Closed forms, quadratures, published numbers, other codes. Exit code 1 when a case misses its stated tolerance.
     """
-    from slosh_cli.results.files import try_targets
+    from slosh_cli.application.validation import validation_folder
     from slosh_cli.validation.registry import chosen, left_out
 
     cases = chosen(names or [])
@@ -61,93 +40,30 @@ def validate(
     if list_only:
         _list(cases, missing, as_json=as_json)
         return ExitCode.DONE
-    folder = output or default_folder(names, cases)
-    try_targets(folder, (REPORT, *(f"{data.name}.{suffix}" for data in cases for suffix in ("png", "svg"))))
-    results = _run(cases)
+    folder = validation_folder(cases, output, part=bool(names))
+    return _carry_out(names or [], missing, folder, as_json=as_json)
+
+
+def _carry_out(names: Sequence[str], missing: "Sequence[CaseData]", folder: Path, *, as_json: bool) -> ExitCode:
+    """Run the cases, write report and figures, tell what came out."""
+    from slosh_cli.application.keeping import Keeping
+    from slosh_cli.application.validation import keep_validation, validate
+    from slosh_cli.cli.keeping import told
+    from slosh_cli.cli.progress import announce_compilation, counting
+
+    announce_compilation()
+    with counting("cases") as progress:
+        results = validate(names, progress)
     if not as_json:
         _show(results, missing, detailed=bool(names))
     keeping = Keeping()
-    files = write_validation(results, missing, folder, keeping)
+    files = keep_validation(results, missing, folder, keeping)
     if as_json:
-        say_json(
-            {
-                "cases": [_plain(result) for result in results],
-                "left_out": [data.name for data in missing],
-                "files": files,
-                **({"warnings": keeping.failures} if keeping.failures else {}),
-            }
-        )
+        answer = {"cases": [result.as_dict() for result in results], "left_out": [data.name for data in missing]}
+        say_json({**answer, "files": files, **({"warnings": keeping.failures} if keeping.failures else {})})
     elif "report" in files:
         say(f"  report   {files['report']}")
-    return keeping.told(ExitCode.DONE if all(result.passed for result in results) else ExitCode.FELL_SHORT)
-
-
-def default_folder(names: Sequence[str] | None, cases: "Sequence[CaseData]") -> Path:
-    """The folder of a report that was given none: a part of the cases does not replace the report of all."""
-    if not names:
-        return FOLDER
-    told = "+".join(data.name for data in cases)
-    short = f"{len(cases)}-cases-{sha256(told.encode()).hexdigest()[:8]}"
-    return FOLDER / (told if len(told) <= _LONGEST else short)
-
-
-def write_validation(
-    results: "Sequence[CaseResult]", missing: "Sequence[CaseData]", folder: Path, keeping: Keeping
-) -> dict[str, Any]:
-    """Write the report into `folder`, then a figure per case; returns where those lie that could be written."""
-    from slosh_cli.results.files import write_text
-    from slosh_cli.validation.markdown import report
-    from slosh_cli.version import __version__
-
-    def draw(result: "CaseResult", folder: Path) -> None:
-        from slosh_cli.report.validation_figures import draw_case
-
-        if result.chart is not None:
-            draw_case(result.name, result.data.title, result.chart, folder)
-
-    text = report(results, missing, f"slosh {__version__}: validation")
-    drawn = {result.name: partial(draw, result) for result in results if result.chart is not None}
-    owned = [REPORT, *(f"{result.name}.{suffix}" for result in results for suffix in ("png", "svg"))]
-    numbers = {REPORT: lambda path: write_text(text, path)}
-    return by_kind(keeping.keep(folder, owned, numbers, drawn), report=REPORT)
-
-
-def _run(cases: "Sequence[CaseData]") -> "list[CaseResult]":
-    """Run the cases one after the other, with a bar on a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from slosh_cli.cli.progress import announce_compilation
-    from slosh_cli.validation.registry import run
-
-    announce_compilation()
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f}/{task.total:.0f}"))
-    console = Console(stderr=True)
-    results = []
-    with Progress(
-        *columns, TimeElapsedColumn(), console=console, transient=True, disable=not sys.stderr.isatty()
-    ) as bar:
-        task = bar.add_task("", total=len(cases))
-        for data in cases:
-            bar.update(task, description=data.name)
-            results.append(run(data))
-            bar.advance(task)
-    return results
-
-
-def _plain(result: "CaseResult") -> dict[str, Any]:
-    rows = [
-        {
-            "quantity": row.quantity,
-            "value": row.value,
-            "reference": row.reference,
-            "deviation": row.deviation,
-            "tolerance": row.tolerance,
-            "source": row.source,
-        }
-        for row in result.rows
-    ]
-    return {"name": result.name, "passed": result.passed, "seconds": result.seconds, "rows": rows}
+    return told(keeping, ExitCode.DONE if all(result.passed for result in results) else ExitCode.FELL_SHORT)
 
 
 def _list(cases: "Sequence[CaseData]", missing: "Sequence[CaseData]", *, as_json: bool) -> None:

@@ -1,1 +1,8 @@
-"""What people look at: the figures of a run."""
+"""Figures of runs, studies, tanks and validation cases; what is named here is known without matplotlib."""
+
+from typing import Final
+
+FORMATS: Final = ("png", "svg")
+"""Kinds of files that every figure is written as."""
+FIGURE_NAMES: Final = ("contact_forces", "speed_distance", "wheel_speed", "slosh")
+"""Every figure of a run, by the name of its files."""

@@ -3,9 +3,9 @@
 Every line differs from its neighbours in line style and in lightness, not in colour alone.
 """
 
-import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from textwrap import shorten, wrap
 from typing import Any, Final
 
 import numpy as np
@@ -13,28 +13,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from slosh_cli.report.record import (
-    FIGURE_NAMES,
-    Record,
-    caption,
-    conditions,
-    has_liquid,
-    locked_stretches,
-    slip_percent,
-)
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report import FIGURE_NAMES, FORMATS
+from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.result import Record, Status
 
 RESOLUTION: Final = 200  # dots per inch
-CAPTION_WIDTH: Final = 126  # characters
+_CAPTION_WIDTH: Final = 126  # characters
 
-WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
+_WHEEL_STYLES: Final[Mapping[int, dict[str, Any]]] = {
     1: {"color": "#08306b", "linestyle": "-", "label": "wheel 1"},
     2: {"color": "#4a98c9", "linestyle": (0, (6, 2)), "label": "wheel 2"},
     3: {"color": "#8c2d04", "linestyle": (0, (6, 2, 1, 2)), "label": "wheel 3"},
     4: {"color": "#fd8d3c", "linestyle": (0, (1.5, 1.2)), "label": "wheel 4"},
 }
-ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
+_ENDS: Final = {1: "wheel 1 (leading)", 4: "wheel 4 (trailing)"}
 FRONT: Final[dict[str, Any]] = {"color": "#08306b", "linestyle": "-"}
 REAR: Final[dict[str, Any]] = {"color": "#fd8d3c", "linestyle": (0, (6, 2))}
 ALARM: Final = "#a50f15"
@@ -51,16 +44,16 @@ def draw_run(
         return [
             file
             for name, draw in FIGURES.items()
-            if name in names and (name != "slosh" or has_liquid(record))
+            if name in names and (name != "slosh" or record.has_liquid)
             for file in save(draw(record), folder, name, formats)
         ]
 
 
-def contact_forces(record: Record) -> Figure:
+def _contact_forces(record: Record) -> Figure:
     """Normal forces of the four wheels against time (Figure 2 of the paper)."""
     figure, (axes,) = _panels(record, "Wheel loads during braking", [1.0], height=5.6)
     for i in WHEELS:
-        style = WHEEL_STYLES[i] | ({"label": ENDS[i]} if i in ENDS else {})
+        style = _WHEEL_STYLES[i] | ({"label": _ENDS[i]} if i in _ENDS else {})
         axes.plot(record.time, record.channels[wheel(i, "normal_force")] / 1e3, **style)
     for load in sorted({round(load / 1e3, 1) for load in record.static_wheel_load_N}):
         at_rest = axes.axhline(load, color=MUTED, linewidth=1.0, linestyle=":", zorder=1)
@@ -71,7 +64,7 @@ def contact_forces(record: Record) -> Figure:
     return figure
 
 
-def speed_distance(record: Record) -> Figure:
+def _speed_distance(record: Record) -> Figure:
     """Speed, acceleration of the car body and distance against time."""
     figure, (speed, acceleration, distance) = _panels(record, "Speed and distance", [1.25, 1.0, 1.0], height=7.4)
     speed.plot(record.time, record.channels["speed"] * 3.6, color=INK)
@@ -94,7 +87,7 @@ def speed_distance(record: Record) -> Figure:
     return figure
 
 
-def wheel_speed(record: Record) -> Figure:
+def _wheel_speed(record: Record) -> Figure:
     """Circumferential speed of the wheels against the train's, their slip, and where they are locked."""
     figure, (speed, slip, locked) = _panels(record, "Wheel speed and slip", [1.5, 1.0, 0.7], height=7.8)
     speed.plot(
@@ -102,8 +95,8 @@ def wheel_speed(record: Record) -> Figure:
         label="train",
     )  # fmt: skip
     for i in WHEELS:
-        speed.plot(record.time, record.channels[wheel(i, "speed")] * 3.6, **WHEEL_STYLES[i])
-        slip.plot(record.time, slip_percent(record, i), **WHEEL_STYLES[i])
+        speed.plot(record.time, record.channels[wheel(i, "speed")] * 3.6, **_WHEEL_STYLES[i])
+        slip.plot(record.time, 100.0 * record.channels[wheel(i, "creepage")], **_WHEEL_STYLES[i])
     speed.set_ylabel("circumferential\nspeed / km/h")
     speed.set_ylim(bottom=0.0)
     slip.set_ylim(5e-3, 200.0)
@@ -117,7 +110,7 @@ def wheel_speed(record: Record) -> Figure:
     return figure
 
 
-def slosh(record: Record) -> Figure:
+def _slosh(record: Record) -> Figure:
     """Rise of the surface at both ends below the roof, amplitudes of the modes, force of the liquid."""
     amplitudes = _amplitudes(record)
     shares = [1.5, 1.0, 1.0] if amplitudes else [1.5, 1.0]
@@ -139,33 +132,40 @@ def slosh(record: Record) -> Figure:
 
 
 FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
-    "contact_forces": contact_forces,
-    "speed_distance": speed_distance,
-    "wheel_speed": wheel_speed,
-    "slosh": slosh,
+    "contact_forces": _contact_forces,
+    "speed_distance": _speed_distance,
+    "wheel_speed": _wheel_speed,
+    "slosh": _slosh,
 }
 """Every figure of a run, by the name of its files."""
 
 
+def _conditions(record: Record) -> str:
+    """Scenario, speed, torque and load in one line, for the head of a figure."""
+    load = f"liquid ({record.liquid_model})" if record.has_liquid else "equivalent solid"
+    speed = f"{record.initial_speed_m_s * 3.6:.4g} km/h"
+    torque = f"{record.torque_N_m / 1e3:.4g} kN m per wheel"
+    return f"{shorten(record.name, 48, placeholder='...')}: V₀ = {speed}, {torque}, {load}"
+
+
+def _caption(record: Record) -> str:
+    """What a reader must know before trusting the figure: how the run ended, its warnings; mostly empty."""
+    ended = [] if record.status is Status.STOPPED else [f"The run ended as {record.status}: {record.reason}"]
+    return "\n".join([*ended, *(f"Warning: {warning}" for warning in record.warnings)])
+
+
 def _panels(record: Record, title: str, shares: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
     """A figure with panels above each other that share the time axis, a head and, if need be, a caption."""
-    note = "\n".join(line for text in caption(record).splitlines() for line in textwrap.wrap(text, CAPTION_WIDTH))
+    note = "\n".join(line for text in _caption(record).splitlines() for line in wrap(text, _CAPTION_WIDTH))
     lines = note.count("\n") + 1 if note else 0
     extra = 0.195 * lines + 0.05 * bool(lines)
     figure = Figure(figsize=(10.0, height + extra), dpi=RESOLUTION)
     total = height + extra
     figure.text(0.018, 1.0 - 0.16 / total, title, fontsize=17, fontweight="bold", color=INK, va="top")
-    figure.text(0.018, 1.0 - 0.52 / total, conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
+    figure.text(0.018, 1.0 - 0.52 / total, _conditions(record), fontsize=12.5, color=MUTED, va="top", parse_math=False)
     if note:
         figure.text(
-            0.018,
-            0.12 / total,
-            note,
-            fontsize=10.5,
-            color=ALARM,
-            va="bottom",
-            linespacing=1.3,
-            parse_math=False,
+            0.018, 0.12 / total, note, fontsize=10.5, color=ALARM, va="bottom", linespacing=1.3, parse_math=False
         )
     figure.set_layout_engine("constrained", rect=(0.012, (extra + 0.1) / total, 0.98, 1.0 - (extra + 0.95) / total))
     axes = figure.subplots(len(shares), 1, sharex=True, squeeze=False, height_ratios=list(shares))[:, 0]
@@ -196,9 +196,9 @@ def _draw_locked(record: Record, axes: Axes) -> None:
     """One bar per wheel, filled where the wheel stands while the wagon moves."""
     found = False
     for i in WHEELS:
-        stretches = locked_stretches(record, i)
+        stretches = record.locked_stretches(i)
         found = found or bool(stretches)
-        axes.broken_barh(stretches, (i - 0.36, 0.72), facecolor=WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8)
+        axes.broken_barh(stretches, (i - 0.36, 0.72), facecolor=_WHEEL_STYLES[i]["color"], edgecolor=INK, linewidth=0.8)
     axes.set_ylim(4.6, 0.4)
     axes.set_yticks(list(WHEELS))
     axes.set_ylabel("locked\nwheel")

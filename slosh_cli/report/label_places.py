@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
-PLACES: Final[Sequence[tuple[float, float]]] = tuple(
+_PLACES: Final[Sequence[tuple[float, float]]] = tuple(
     (x, sign * y) for y in (13.0, 30.0, 48.0) for x in (0.0, 25.0, -25.0, 50.0, -50.0, 70.0, -70.0) for sign in (-1, 1)
 )
 """Offsets in points that are tried, from the point to the name's middle; below and above."""
 
-ROOM: Final = 8.0
+_ROOM: Final = 8.0
 """Points left free around a name, for the marker of another point."""
 
 
@@ -33,11 +33,11 @@ def spread(axes: Axes, names: Sequence[Annotation], points: Sequence[tuple[float
             box = box.translated(0.0, -box.height) if place[1] < 0 else box
             outside = not (axes.bbox.contains(box.x0, box.y0) and axes.bbox.contains(box.x1, box.y1))
             covered = sum(box.overlaps(other) for other in taken)
-            hidden = box.padded(ROOM * axes.figure.dpi / 72.0).count_contains(on_screen)
+            hidden = box.padded(_ROOM * axes.figure.dpi / 72.0).count_contains(on_screen)
             away = abs(place[0]) + abs(place[1]) + (10.0 if place[1] * side < 0 else 0.0)
             return 1e4 * covered + 1e3 * hidden + 1e3 * outside + away
 
-        taken.append(_put(name, min(PLACES, key=cost)))
+        taken.append(_put(name, min(_PLACES, key=cost)))
 
 
 def _put(name: Annotation, place: tuple[float, float]) -> Bbox:

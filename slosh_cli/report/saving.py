@@ -10,10 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from slosh_cli.report import record
+from slosh_cli.report import FORMATS
 from slosh_cli.results.files import FileError, replacing
-
-FORMATS: Final = record.FORMATS
 
 INK: Final = "#222222"
 MUTED: Final = "#777777"

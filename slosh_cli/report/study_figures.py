@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import gc
 import math
-import re
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
@@ -23,20 +21,17 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from slosh_cli.report import figures
+from slosh_cli.report import FORMATS, figures
 from slosh_cli.report.label_places import spread
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report.saving import INK, MUTED, save, styled
+from slosh_cli.report.study_pages import Mark, Page, StopsPanel, figure_files, figure_name
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Status
+from slosh_cli.study.plan import SOLID
 
-NAME: Final = "braking_distance"
-_OURS: Final = re.compile(rf"{NAME}(?:_[0-9]+)?\.(?:png|svg)")
-SOLID: Final = "rigid"
-LINEAR: Final = "modal"
-WIDTH: Final = 10.4
+_LINEAR: Final = "modal"
+_WIDTH: Final = 10.4
 """Width of a figure of two panels in inches; a wider one has no more pixels across."""
-MOST_PANELS: Final = 6
-MOST_PAGES: Final = 12
 
 LOOKS: Final[Sequence[dict[str, Any]]] = (
     {"color": "#08306b", "marker": "o", "linestyle": "-", "markersize": 6.5},
@@ -46,41 +41,7 @@ LOOKS: Final[Sequence[dict[str, Any]]] = (
 )
 OUTSIDE: Final = (0, (1, 1.8))
 """Line style of the way to and from a stop outside linear theory."""
-WITHOUT_ANSWER: Final = {Status.PITCH_LIMIT: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
-
-
-@dataclass(frozen=True)
-class Mark:
-    """One stop: its place `x` on the axis, braking distance in m (None without an answer), how it ended."""
-
-    x: float
-    distance: float | None
-    status: Status
-    liquid_in_range: bool
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One panel: its title and, by model of the load, its stops in the order of `x`."""
-
-    title: str
-    curves: dict[str, list[Mark]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Page:
-    """One figure: panels that share the horizontal axis `label`; `ticks` name its places where it has no numbers.
-
-    `best` is what the lowest point of a curve is called, `unit` that of the horizontal axis.
-    """
-
-    title: str
-    conditions: str
-    label: str
-    unit: str
-    best: str
-    panels: Sequence[Panel]
-    ticks: Sequence[str] = ()
+_WITHOUT_ANSWER: Final = {Status.PITCH_LIMIT: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
 
 
 def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
@@ -93,7 +54,7 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
     refusal: FileError | None = None
     with styled():
         for number, page in enumerate(pages, start=1):
-            name = NAME if len(pages) == 1 else f"{NAME}_{number}"
+            name = figure_name(number, len(pages))
             try:
                 files += save(braking_distance(page), folder, name, formats)
             except FileError as error:
@@ -102,9 +63,9 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
                 gc.collect()  # a drawn figure is ten megabytes of objects that refer to each other
     if refusal is not None:
         raise refusal
-    for file in folder.iterdir():
-        if file not in files and _OURS.fullmatch(file.name):
-            file.unlink(missing_ok=True)
+    for name in figure_files(folder):
+        if folder / name not in files:
+            (folder / name).unlink(missing_ok=True)
     return files
 
 
@@ -118,7 +79,7 @@ def braking_distance(page: Page) -> Figure:
     beside = _beside(handles, width)
     header = 1.35 + 0.28 * (math.ceil(len(handles) / beside) - 1)
     height = 4.6 * lines + 0.4 + header
-    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, WIDTH / width))
+    figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, _WIDTH / width))
     FigureCanvasAgg(figure)  # measures all its words with one canvas
     figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
     words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
@@ -157,7 +118,7 @@ def _looks(page: Page) -> dict[str, dict[str, Any]]:
     return {model: LOOKS[1] if model == SOLID else next(others) for model in models}
 
 
-def _draw_panel(axes: Axes, page: Page, panel: Panel, looks: dict[str, dict[str, Any]]) -> list[Annotation]:
+def _draw_panel(axes: Axes, page: Page, panel: StopsPanel, looks: dict[str, dict[str, Any]]) -> list[Annotation]:
     """Draw the curves; returns the names of their lowest points."""
     for model, marks in sorted(panel.curves.items(), key=lambda curve: curve[0] != SOLID):  # the solid lies below
         _draw_curve(axes, marks, looks[model])
@@ -212,12 +173,12 @@ def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) ->
     for mark in marks:
         if mark.distance is None:
             axes.plot(
-                [mark.x], [0.965], marker=WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
+                [mark.x], [0.965], marker=_WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
                 markeredgewidth=2.2, linestyle="none", transform=axes.get_xaxis_transform(), zorder=4,
             )  # fmt: skip
 
 
-def _scale(axes: Axes, panel: Panel) -> None:
+def _scale(axes: Axes, panel: StopsPanel) -> None:
     """A logarithmic axis where distances differ a lot: on it, a ratio has the same length everywhere."""
     found = [mark.distance for marks in panel.curves.values() for mark in marks if mark.distance]
     if not found:
@@ -264,10 +225,10 @@ def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
     marks = [mark for panel in page.panels for marks in panel.curves.values() for mark in marks]
     if any(mark.distance is not None and not mark.liquid_in_range for mark in marks):
         look = {"marker": "o", "markerfacecolor": "white", "markeredgewidth": 1.5, "markersize": 7.0}
-        words = "outside linear theory" if set(looks) <= {LINEAR, SOLID} else "outside its theory"
+        words = "outside linear theory" if set(looks) <= {_LINEAR, SOLID} else "outside its theory"
         handles.append(_key(words, linestyle=OUTSIDE, **look))
     for status in sorted({mark.status for mark in marks if mark.distance is None}):
-        look = {"marker": WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
+        look = {"marker": _WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
         handles.append(_key(str(status), linestyle="none", **look))
     ring = {"marker": "o", "markerfacecolor": "none", "markersize": 13.0, "markeredgewidth": 1.6}
     return [*handles, _key(page.best, linestyle="none", **ring)]

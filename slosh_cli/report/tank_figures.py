@@ -9,7 +9,6 @@ import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -19,7 +18,7 @@ from matplotlib.tri import Triangulation
 
 from slosh_cli.report import figures
 from slosh_cli.report.figures import FRONT, REAR
-from slosh_cli.report.saving import FORMATS, INK, MUTED, save, styled
+from slosh_cli.report.saving import INK, MUTED
 from slosh_cli.tank.mesh import Floats
 from slosh_cli.tank.section import TankGeometry, section_of
 
@@ -28,17 +27,15 @@ if TYPE_CHECKING:
     from slosh_cli.tank.chart import FillChart
     from slosh_cli.tank.longitudinal import LongitudinalMode
 
-EXCITATION: Final = "excite"
-CHART: Final = "fill_chart"
-MODE_LOOKS: Final[tuple[dict[str, Any], ...]] = (
+_MODE_LOOKS: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#08306b", "linestyle": "-"},
     {"color": "#c1440e", "linestyle": (0, (6, 2))},
     {"color": "#4a98c9", "linestyle": (0, (6, 2, 1, 2))},
     {"color": "#7a7a7a", "linestyle": (0, (1.5, 1.2))},
 )
-WARNING_WIDTH: Final = 12.6
+_WARNING_WIDTH: Final = 12.6
 """Characters of a warning per inch of a figure's width."""
-SURFACE_SHARE: Final = 0.16
+_SURFACE_SHARE: Final = 0.16
 """The drawn rise of a mode's surface, as a share of the section's height."""
 
 
@@ -51,32 +48,8 @@ class Heading:
     warnings: Sequence[str] = ()
 
 
-def draw_excitation(
-    excitation: Excitation, heading: Heading, room: float, folder: Path, formats: Sequence[str] = FORMATS
-) -> list[Path]:
-    """Deceleration, force, moment and surface against time; `room` (m) is the roof's height over the still level."""
-    with styled():
-        return save(excitation_figure(excitation, heading, room), folder, EXCITATION, formats)
-
-
-def draw_mode(
-    mode: LongitudinalMode, tank: TankGeometry, heading: Heading, folder: Path, formats: Sequence[str] = FORMATS
-) -> list[Path]:
-    """A mode over the cross-section and along the tank; the files are named `mode_1`, `mode_3`, ... by n."""
-    with styled():
-        return save(mode_figure(mode, tank, heading), folder, f"mode_{mode.n}", formats)
-
-
-def draw_chart(
-    chart: FillChart, heading: Heading, fill: float, folder: Path, formats: Sequence[str] = FORMATS
-) -> list[Path]:
-    """Frequency, mass fraction and height against the filling; `fill` is the tank's own."""
-    with styled():
-        return save(chart_figure(chart, heading, fill), folder, CHART, formats)
-
-
 def excitation_figure(excitation: Excitation, heading: Heading, room: float) -> Figure:
-    """Four panels over one time axis."""
+    """Deceleration, force, moment and surface against time; `room` (m) is the roof's height over the still level."""
     figure = _headed(heading, (10.0, 9.2))
     given, force, moment, surface = figure.subplots(4, 1, sharex=True, height_ratios=[0.7, 1.2, 1.0, 1.2])
     time = excitation.time
@@ -126,7 +99,7 @@ def mode_figure(mode: LongitudinalMode, tank: TankGeometry, heading: Heading) ->
 
 
 def chart_figure(chart: FillChart, heading: Heading, fill: float) -> Figure:
-    """Three panels side by side over the filling."""
+    """Frequency, mass fraction and height of the modes against the filling; `fill` is the tank's own."""
     figure = _headed(heading, (14.5, 5.4), head=1.3)
     panels = figure.subplots(1, 3)
     quantities = (
@@ -138,7 +111,7 @@ def chart_figure(chart: FillChart, heading: Heading, fill: float) -> Figure:
     marker = "o" if len(percent) < 40 else None
     for axes, (values, label) in zip(panels, quantities, strict=True):
         for row, n in enumerate(chart.numbers):
-            look = MODE_LOOKS[row % len(MODE_LOOKS)]
+            look = _MODE_LOOKS[row % len(_MODE_LOOKS)]
             axes.plot(percent, values[row], **look, marker=marker, markersize=3.5, label=f"n = {n}")
         axes.axvline(100.0 * fill, color=MUTED, linewidth=1.0, linestyle=":", label=f"filling {100.0 * fill:.3g} %")
         axes.set_xlabel("filling (depth over height) / %")
@@ -163,7 +136,7 @@ def _draw_section(axes: Axes, mode: LongitudinalMode, tank: TankGeometry, height
         bar = axes.figure.colorbar(filled, ax=axes, shrink=0.8, ticks=levels[::3], format="%.3g")
         bar.set_label("potential φ / m")
     depth = float(shape.z.max())
-    lift = depth + SURFACE_SHARE * height * shape.surface_rise
+    lift = depth + _SURFACE_SHARE * height * shape.surface_rise
     axes.plot(shape.surface_y, lift, color="#c1440e", linewidth=2.2, label="risen surface (not to scale)")
     axes.plot(shape.surface_y[[0, -1]], [depth, depth], color=MUTED, linewidth=1.2, linestyle=(0, (4, 3)))
     y, z = _outline(tank, height)
@@ -195,7 +168,7 @@ def _headed(heading: Heading, size: tuple[float, float], head: float = 0.95) -> 
     """A figure of `size` (inches) with its head written; `head` inches stay free for it, and some for its warnings."""
     width, height = size
     lines = [
-        line for text in heading.warnings for line in textwrap.wrap(f"Warning: {text}", int(WARNING_WIDTH * width))
+        line for text in heading.warnings for line in textwrap.wrap(f"Warning: {text}", int(_WARNING_WIDTH * width))
     ]
     foot = 0.195 * len(lines) + 0.1 * bool(lines)
     height += foot

@@ -7,42 +7,33 @@ legend stands above the axes, where it hides nothing.
 from __future__ import annotations
 
 from itertools import cycle
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from slosh_cli.report.saving import save, styled
-
 if TYPE_CHECKING:
     from slosh_cli.validation.chart import Chart, Curve, Panel
 
-PANEL_WIDTH: Final = 7.0  # inches
-HEIGHT: Final = 5.8
+_PANEL_WIDTH: Final = 7.0  # inches
+_HEIGHT: Final = 5.8
 RESOLUTION: Final = 130  # dots per inch
 
-LINES: Final[tuple[dict[str, Any], ...]] = (
+_LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#08306b", "linestyle": "-"},
     {"color": "#c1440e", "linestyle": (0, (6, 2))},
     {"color": "#4a98c9", "linestyle": (0, (6, 2, 1, 2))},
     {"color": "#7a7a7a", "linestyle": (0, (1.5, 1.2))},
     {"color": "#8c2d04", "linestyle": (0, (3, 1))},
 )
-MARKS: Final = ("o", "s", "^", "D", "v", "P")
-EXACT: Final[tuple[str, ...]] = ("#bdbdbd", "#d9c7a8", "#c6d6e8")
-
-
-def draw_case(name: str, title: str, chart: Chart, folder: Path) -> list[Path]:
-    """Draw the figure of a case into `folder`; returns the files. Each appears whole or not at all."""
-    with styled():
-        return save(case_figure(title, chart), folder, name)
+_MARKS: Final = ("o", "s", "^", "D", "v", "P")
+_EXACT: Final[tuple[str, ...]] = ("#bdbdbd", "#d9c7a8", "#c6d6e8")
 
 
 def case_figure(title: str, chart: Chart) -> Figure:
     """The panels of a chart side by side."""
     count = len(chart.panels)
-    figure = Figure(figsize=(PANEL_WIDTH * count, HEIGHT), dpi=RESOLUTION, layout="constrained")
+    figure = Figure(figsize=(_PANEL_WIDTH * count, _HEIGHT), dpi=RESOLUTION, layout="constrained")
     figure.suptitle(title, fontsize=15, fontweight="bold", x=0.012, ha="left")
     for axes, panel in zip(figure.subplots(1, count, squeeze=False)[0], chart.panels, strict=True):
         _draw_panel(axes, panel)
@@ -50,7 +41,7 @@ def case_figure(title: str, chart: Chart) -> Figure:
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
-    lines, marks, exact = cycle(LINES), cycle(zip(MARKS, LINES, strict=False)), cycle(EXACT)
+    lines, marks, exact = cycle(_LINES), cycle(zip(_MARKS, _LINES, strict=False)), cycle(_EXACT)
     for one in panel.curves:
         _draw_curve(axes, one, lines, marks, exact)
     axes.set_xlabel(panel.x_label)

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 WHEELS = (1, 2, 3, 4)
 """Wheel numbers: 1 leads the front bogie, 4 trails the rear bogie."""
-BOGIES = (1, 2)
+_BOGIES = (1, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ _ENERGY = (
 def _fixed_channels() -> tuple[Channel, ...]:
     bogies = (
         Channel(f"bogie_{i}_{quantity}", unit, meaning.format(i=i))
-        for i in BOGIES
+        for i in _BOGIES
         for quantity, unit, meaning in _BOGIE
     )
     wheels = (
@@ -109,8 +109,3 @@ def channel(name: str) -> Channel:
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")
     raise KeyError(f"There is no channel named {name!r}.")
-
-
-def is_channel(name: str) -> bool:
-    """Whether a channel is called `name`."""
-    return name in CHANNELS or _SLOSH_AMPLITUDE.fullmatch(name) is not None

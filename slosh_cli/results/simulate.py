@@ -9,11 +9,12 @@ import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.method import START
+from slosh_cli.results.answers import PerWheel
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
-from slosh_cli.results.result import PerWheel, Result, Status
+from slosh_cli.results.result import Result, Status
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario

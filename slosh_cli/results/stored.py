@@ -1,19 +1,21 @@
-"""What a history file must hold to be the history of a run, apart from the format it is kept in."""
+"""A run read back: what its file must hold to be the history of a run, apart from the format it is kept in."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator, Mapping
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, Final
 
 import numpy as np
 
+from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
 from slosh_cli.results.channels import TIME, WHEELS, wheel
-from slosh_cli.results.result import Status, Vector
+from slosh_cli.results.result import Record, Status, Vector
+from slosh_cli.results.validity import Check
 from slosh_cli.scenario.scalars import well_formed
 
-MOST_ROWS: Final = 10_000_000
+_MOST_ROWS: Final = 10_000_000
 """Rows of a history; a run has at most two million."""
-LARGEST: Final = 1e15
+_LARGEST: Final = 1e15
 """Numbers beyond this, in SI units, are of no run."""
 
 NEEDED: Final = frozenset(
@@ -23,64 +25,90 @@ NEEDED: Final = frozenset(
 """Channels that figures and reports cannot do without."""
 
 
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str) and not well_formed(value)[1]
+class History(Record):
+    """A run read back from its file: the same answers, channels and methods as a `Result`.
 
+    attributes: every root attribute of the file, as plain Python values and float64 arrays.
+    scenario_text: the scenario as resolved YAML.
 
-def _is_status(value: Any) -> bool:
-    try:
-        return isinstance(value, str) and bool(Status(value))
-    except ValueError:
-        return False
+    An answer that files of an earlier version do not hold is no attribute: asking for it raises AttributeError.
+    """
 
+    attributes: Mapping[str, Any]
+    scenario_text: str
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and bool(np.abs(value) < LARGEST)
-
-
-def _is_number_or_nan(value: Any) -> bool:
-    return _is_number(value) or (isinstance(value, float) and bool(np.isnan(value)))
-
-
-def _is_per_wheel(value: Any) -> bool:
-    return (
-        isinstance(value, np.ndarray)
-        and value.shape == (len(WHEELS),)
-        and value.dtype.kind in "fiu"
-        and bool((np.abs(value) < LARGEST).all())
-    )
-
-
-_TEXT: Final = (_is_text, "text")
-_STATUS: Final = (_is_status, f"one of {', '.join(Status)}")
-_NUMBER: Final = (_is_number, "a finite number")
-_NUMBER_OR_NAN: Final = (_is_number_or_nan, "a number")
-_PER_WHEEL: Final = (_is_per_wheel, f"{len(WHEELS)} finite numbers")
-
-ATTRIBUTES: Final[Mapping[str, tuple[Callable[[Any], bool], str]]] = {
-    "name": _TEXT,
-    "status": _STATUS,
-    "reason": _TEXT,
-    "warnings": _TEXT,
-    "initial_speed_m_s": _NUMBER,
-    "torque_N_m": _NUMBER,
-    "onset_s": _NUMBER,
-    "liquid_model": _TEXT,
-    "surface_limit_m": _NUMBER_OR_NAN,
-    "braking_distance_m": _NUMBER_OR_NAN,
-    "static_wheel_load_N": _PER_WHEEL,
-}
-"""The root attributes that a `History` is asked for, with what each must be."""
+    def __init__(
+        self, *, time: Vector, channels: Mapping[str, Vector], attributes: Mapping[str, Any], scenario_text: str
+    ) -> None:
+        held = {one.name: _value(one, attributes[one.name]) for one in History.table() if one.name in attributes}
+        given = {"time": time, "channels": channels, "attributes": attributes, "scenario_text": scenario_text}
+        for name, value in (held | given).items():
+            object.__setattr__(self, name, value)
+        for one in History.table():
+            if one.of and Shown.HISTORY not in one.shown:
+                with suppress(AttributeError, ArithmeticError):
+                    object.__setattr__(self, one.name, one.of(self))
 
 
 def faults_of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
     """What is wrong with the root attributes, in words that follow the name of the file."""
-    missing = [key for key in ATTRIBUTES if key not in attributes]
+    missing = [one.name for one in History.table() if one.needed and one.name not in attributes]
     if missing:
         yield f"it lacks the attributes {', '.join(missing)}"
-    for key, (is_sound, words) in ATTRIBUTES.items():
-        if key in attributes and not is_sound(attributes[key]):
-            yield f"its attribute {key} must be {words}, but is {_shown(attributes[key])}"
+    for one in History.table():
+        if one.name in attributes and not _is_sound(one, attributes[one.name]):
+            yield f"its attribute {one.name} must be {_words(one)}, but is {_shown(attributes[one.name])}"
+
+
+def _is_sound(one: Answer, value: Any) -> bool:
+    """Whether an attribute is of the kind of its answer, and within bounds where no run does without it."""
+    if one.unit:
+        return _are_numbers(one, value)
+    if one.kind is bool:
+        return isinstance(value, bool)
+    try:
+        return isinstance(value, str) and not well_formed(value)[1] and _value(one, value) is not None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return False
+
+
+def _are_numbers(one: Answer, value: Any) -> bool:
+    found = np.asarray(value)
+    kinds = "iu" if one.kind is int else "fiu"
+    if found.shape != ((len(WHEELS),) if one.kind == PerWheel else ()) or found.dtype.kind not in kinds:
+        return False
+    sound = np.abs(found) < _LARGEST
+    return not one.needed or bool((sound if _is_finite(one) else sound | np.isnan(found)).all())
+
+
+def _is_finite(one: Answer) -> bool:
+    """Whether a figure can do nothing without the number."""
+    return one.needed and one.place in (Place.CONDITIONS, Place.WHEELS)
+
+
+def _words(one: Answer) -> str:
+    """What an attribute must be."""
+    if one.unit:
+        finite = "finite " * _is_finite(one)
+        return f"{len(WHEELS)} {finite}numbers" if one.kind == PerWheel else f"a {finite}number"
+    words = {Status: f"one of {', '.join(Status)}", bool: "true or false", tuple[Check, ...]: "a list of checks"}
+    return words.get(one.kind, "text")
+
+
+def _value(one: Answer, value: Any) -> Any:
+    """An answer from the attribute that holds it."""
+    if one.kind == float | None:
+        return None if np.isnan(value) else float(value)
+    if one.kind == PerWheel:
+        return tuple(float(number) for number in value)
+    if one.kind == tuple[str, ...]:
+        return tuple(value.splitlines())
+    if one.kind == tuple[Check, ...]:
+        return tuple(
+            Check(found["check"], found["kind"], float(found["value"]), float(found["limit"]), "")
+            for found in json.loads(value)
+        )
+    return one.kind(value)
 
 
 def faults_of_shape(name: str, dataset: Any) -> Iterator[str]:
@@ -90,8 +118,8 @@ def faults_of_shape(name: str, dataset: Any) -> Iterator[str]:
         yield f"its {name} must be a dataset, but is a group"
     elif len(shape) != 1 or dtype.kind not in "fiu":
         yield f"its {name} must be a column of numbers, but has the shape {shape} and the type {dtype}"
-    elif not 0 < shape[0] <= MOST_ROWS:
-        yield f"its {name} must have from 1 to {MOST_ROWS} rows, but has {shape[0]}"
+    elif not 0 < shape[0] <= _MOST_ROWS:
+        yield f"its {name} must have from 1 to {_MOST_ROWS} rows, but has {shape[0]}"
 
 
 def faults_of_columns(time: Vector, channels: Mapping[str, Vector]) -> Iterator[str]:

@@ -5,50 +5,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from slosh_cli.results.channels import WHEELS
 from slosh_cli.results.files import replacing
-from slosh_cli.results.result import Result
 from slosh_cli.scenario.scalars import plain_number
 
 _FORMULA: Final = tuple("=+-@＝＋－＠")
 """What a spreadsheet takes for the beginning of a formula."""
 _CONTROL: Final = tuple("\t\r\n")
-
-
-def summary_row(result: Result) -> dict[str, Any]:
-    """One stop as a row: column name (with unit) -> value; None where the run has no answer."""
-    row: dict[str, Any] = {
-        "name": result.name,
-        "v0_km_h": _tidy(result.initial_speed_m_s * 3.6),
-        "torque_kN_m": _tidy(result.torque_N_m / 1e3),
-        "liquid": result.liquid_model,
-        "braking_distance_m": result.braking_distance_m,
-        "braking_time_s": result.braking_time_s,
-        "status": str(result.status),
-        "max_surface_m": result.max_surface_m,
-        "surface_limit_m": result.surface_limit_m,
-    }
-    per_wheel = {
-        "min_wheel_load_{}_N": result.min_wheel_load_N,
-        "max_wheel_load_{}_N": result.max_wheel_load_N,
-        "static_wheel_load_{}_N": result.static_wheel_load_N,
-        "locked_time_{}_s": result.locked_time_s,
-    }
-    for column, values in per_wheel.items():
-        row |= {column.format(i): value for i, value in zip(WHEELS, values, strict=True)}
-    return row | {
-        "max_wheel_unloading": result.max_wheel_unloading,
-        "mean_total_wheel_load_N": result.mean_total_wheel_load_N,
-        "weight_N": result.weight_N,
-        "energy_residual": result.energy_residual,
-        "steps": result.steps,
-        "rejected_steps": result.rejected_steps,
-        "solve_seconds": result.solve_seconds,
-        "in_model_range": result.in_model_range,
-        "not_within": "; ".join(check.name for check in result.checks if not check.within),
-        "reason": result.reason,
-        "warnings": "; ".join(result.warnings),
-    }
 
 
 def write_table(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -93,13 +55,3 @@ def _cell(value: Any) -> Any:
     runs = value.startswith(_CONTROL) or value.lstrip()[:1] in _FORMULA
     mark = "'" if runs and plain_number(value.strip()) is None else ""
     return mark + "\n".join(value.replace("\r\n", "\n").split("\r"))
-
-
-def write_summary(result: Result, path: Path) -> None:
-    """Write `summary.csv`: the one row of `summary_row`."""
-    write_table([summary_row(result)], path)
-
-
-def _tidy(value: float) -> float:
-    """Drop the rounding that a change of units leaves behind (80.00000000000001 km/h)."""
-    return float(f"{value:.12g}")

@@ -1,17 +1,17 @@
 """Scenarios: what is simulated, read from YAML with units and checked as a whole."""
 
-from slosh_cli.scenario.given_modes import OutlivedCoefficientsError
-from slosh_cli.scenario.loader import (
+from slosh_cli.scenario.loader import load_document, scenario_to_yaml
+from slosh_cli.scenario.packaged import find_packaged, packaged_scenarios, packaged_text
+from slosh_cli.scenario.schema import (
+    Scenario,
+    TankScenario,
+    json_schema,
     load_any_scenario,
-    load_document,
     load_scenario,
     load_tank_scenario,
     parse_scenario,
-    replace,
-    scenario_to_yaml,
 )
-from slosh_cli.scenario.packaged import find_packaged, packaged_scenarios, packaged_text
-from slosh_cli.scenario.schema import Scenario, TankScenario, json_schema
+from slosh_cli.scenario.schema_modes import OutlivedCoefficientsError
 from slosh_cli.scenario.schema_run import (
     Adhesion,
     Braking,
@@ -78,6 +78,5 @@ __all__ = [
     "packaged_text",
     "parse_quantity",
     "parse_scenario",
-    "replace",
     "scenario_to_yaml",
 ]

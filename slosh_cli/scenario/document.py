@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from slosh_cli.errors import Problem
+from slosh_cli.scenario.base import Path
 from slosh_cli.scenario.rules import Finding
+from slosh_cli.scenario.tree import value_at
 from slosh_cli.scenario.units import plain
-
-Path = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,12 @@ class Document:
             self.origins.pop(path, None)
 
     def normal(self, path: Path) -> Path:
-        """`path` with the indices into lists as integers."""
-        return tuple(int(step) if isinstance(self._at(path[:depth]), list) else step for depth, step in enumerate(path))
+        """`path` with the indices into lists as integers, as far as it leads."""
+        found: list[str | int] = []
+        for step in path:
+            listed = isinstance(value_at(self.data, tuple(found)), list) and str(step).isdecimal()
+            found.append(int(step) if listed else step)
+        return tuple(found)
 
     def _at(self, path: Path) -> Any:
         value = self.data

@@ -1,26 +1,22 @@
-"""The kinds of single value a scenario holds: quantity, number, count, choice, text, coordinates.
+"""The kinds of single value a scenario holds: quantity, number, count; those of words are in `words`.
 
 A leaf stands in the annotation of a model field (``Annotated[float, Quantity(...)]``). It checks the value,
-words the refusal, and describes itself in the JSON schema. Values read from a file or a command line are
-validated with the context FROM_TEXT, where a quantity has to carry its unit; models built in Python take
-plain SI floats.
+words the refusal, and describes itself in the JSON schema. In values read from a file or a command line
+(`Part.from_text`) a quantity has to carry its unit; models built in Python take plain SI floats.
 """
 
 from __future__ import annotations
 
-import difflib
 import math
-import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.units import (
     DIMENSIONS,
     at_least,
@@ -34,48 +30,62 @@ from slosh_cli.scenario.units import (
     shown,
 )
 
-FROM_TEXT: Final[dict[str, bool]] = {"units_required": True}
-QUANTITY_PATTERN: Final = (
-    r"^\s*(?![+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*$)[+\-\u2212]?\.?[0-9].*[A-Za-z\u00b0\u00b5\u03bc].*$"
-)
-"""Of a text in a JSON schema: a number first and a letter somewhere behind it, but no bare number."""
-PERCENT_PATTERN: Final = r"^\s*[+\-\u2212]?\.?[0-9].*(?:%|\u2030|per ?cent|pct|per ?mille)\s*$"
+_PERCENT_PATTERN: Final = r"^\s*[+\-\u2212]?\.?[0-9].*(?:%|\u2030|per ?cent|pct|per ?mille)\s*$"
 
 
 class SIValue(float):
     """A float already in SI, accepted where a file would have to give a unit."""
 
 
-def refused_error(refused: ValueRefused) -> PydanticCustomError:
-    """A refusal in the form pydantic collects."""
-    context = {"rule": refused.rule, "given": refused.given, "fix": refused.fix}
-    return PydanticCustomError("refused", "{rule}; given {given}; {fix}", context)
-
-
 @dataclass(frozen=True)
-class Leaf:
-    """Base of the leaves."""
+class Check:
+    """What an annotation asks of a value before anything else looks at it."""
 
     def parse(self, value: object) -> Any:
-        """The checked value of something read from a file; ValueRefused where a rule is broken."""
+        """The value, or what it stands for; ValueRefused where a rule is broken."""
         raise NotImplementedError
 
     def parse_python(self, value: object) -> Any:
-        """The checked value of something given in Python."""
+        """The same of something given in Python."""
         return self.parse(value)
+
+    def _validate(self, value: Any, info: core_schema.ValidationInfo) -> Any:
+        try:
+            return self.parse(value) if info.context else self.parse_python(value)
+        except ValueRefused as refused:
+            context = {"rule": refused.rule, "given": refused.given, "fix": refused.fix}
+            raise PydanticCustomError("refused", "{rule}; given {given}; {fix}", context) from None
+
+    def _before(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """The schema of the annotation `source` with the check ahead of it."""
+        return core_schema.with_info_before_validator_function(self._validate, handler(source))
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return self._before(source, handler)
+
+
+@dataclass(frozen=True)
+class Leaf(Check):
+    """Base of the leaves: all that is asked of a single value."""
+
+    def sample(self) -> str:
+        """A value as a file may hold it."""
+        raise NotImplementedError
+
+    def advice(self, key: str) -> str:
+        """What to write where the key is missing."""
+        return f"write it, such as `{key}: {self.sample()}`"
+
+    def written(self, value: Any, *, as_text: bool) -> Any:  # noqa: ARG002 - quantities differ
+        """A checked value as plain data that reads back as it, with `as_text` as a file would hold it."""
+        return _listed(value)
 
     def json_schema(self) -> dict[str, Any]:
         """What a JSON schema says about the value as a file holds it."""
         raise NotImplementedError
 
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
-        def validate(value: Any, info: core_schema.ValidationInfo) -> Any:
-            try:
-                return self.parse(value) if _from_text(info.context) else self.parse_python(value)
-            except ValueRefused as refused:
-                raise refused_error(refused) from None
-
-        return core_schema.with_info_plain_validator_function(validate)
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._validate)
 
     def __get_pydantic_json_schema__(
         self, _core: core_schema.CoreSchema, _handler: GetJsonSchemaHandler
@@ -83,8 +93,8 @@ class Leaf:
         return self.json_schema()
 
 
-def _from_text(context: Any) -> bool:
-    return bool(context and context.get("units_required"))
+def _listed(value: Any) -> Any:
+    return [_listed(entry) for entry in value] if isinstance(value, tuple) else value
 
 
 @dataclass(frozen=True)
@@ -113,10 +123,25 @@ class Range:
 class Quantity(Leaf):
     """A number with a unit, held as an SI float within `limits` (SI). `example` is what to write."""
 
+    PATTERN: ClassVar[str] = (
+        r"^\s*(?![+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?\s*$)[+\-\u2212]?\.?[0-9].*[A-Za-z\u00b0\u00b5\u03bc].*$"
+    )
+    """Of a text in a JSON schema: a number first and a letter somewhere behind it, but no bare number."""
+
     dimension: str
     limits: Range
     example: str
     nonzero: bool = False
+
+    def sample(self) -> str:
+        return self.example
+
+    def written(self, value: Any, *, as_text: bool) -> Any:
+        return f"{value!r} {self.unit}" if as_text else SIValue(value)
+
+    def multiple(self, value: object, times: float) -> object:
+        """A value of this leaf for a field that holds `times` less: a diameter for a radius."""
+        return _Multiple(value, self, times)
 
     @property
     def unit(self) -> str:
@@ -126,7 +151,7 @@ class Quantity(Leaf):
     def parse(self, value: object) -> float:
         if isinstance(value, SIValue):
             number = float(value)
-        elif isinstance(value, Multiple):
+        elif isinstance(value, _Multiple):
             return value.share(value.leaf.parse(value.value))
         else:
             number = parse_quantity(value, self.dimension, self._accepts, self.example)
@@ -141,7 +166,7 @@ class Quantity(Leaf):
         raise ValueRefused(f"must be {noun} {self.limits.words(self.unit)}", given, self._range_fix(value))
 
     def parse_python(self, value: object) -> float:
-        if isinstance(value, Multiple):
+        if isinstance(value, _Multiple):
             return value.share(value.leaf.parse_python(value.value))
         bare = isinstance(value, int | float) and not isinstance(value, bool)
         return self.parse(SIValue(value) if bare else value)  # type: ignore[arg-type]
@@ -163,7 +188,7 @@ class Quantity(Leaf):
         kind = DIMENSIONS[self.dimension]
         return {
             "type": "string",
-            "pattern": QUANTITY_PATTERN,
+            "pattern": self.PATTERN,
             "examples": [self.example],
             "x-unit": kind.unit,
             "x-range": self.limits.words(kind.unit),
@@ -171,8 +196,8 @@ class Quantity(Leaf):
 
 
 @dataclass(frozen=True)
-class Multiple:
-    """A value that was written under another key, `times` as large as the field's: a diameter for a radius."""
+class _Multiple:
+    """A value with the leaf that it was written for, `times` as large as another's."""
 
     value: object
     leaf: Quantity
@@ -220,6 +245,9 @@ class Number(Leaf):
     limits: Range
     example: str
 
+    def sample(self) -> str:
+        return self.example
+
     def parse(self, value: object) -> float:
         rule = f"must be a number {self.limits.words()}"
         share = percentage(value) if isinstance(value, str) else None
@@ -237,7 +265,7 @@ class Number(Leaf):
         low = "exclusiveMinimum" if self.limits.above else "minimum"
         high = "exclusiveMaximum" if self.limits.below else "maximum"
         number = {"type": "number", low: self.limits.low, high: self.limits.high}
-        return {"anyOf": [number, {"type": "string", "pattern": PERCENT_PATTERN}]}
+        return {"anyOf": [number, {"type": "string", "pattern": _PERCENT_PATTERN}]}
 
 
 @dataclass(frozen=True)
@@ -246,6 +274,9 @@ class Count(Leaf):
 
     low: int
     high: int
+
+    def sample(self) -> str:
+        return str(self.low)
 
     def parse(self, value: object) -> int:
         rule = f"must be a whole number from {self.low} to {self.high}"
@@ -259,101 +290,3 @@ class Count(Leaf):
 
     def json_schema(self) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.low, "maximum": self.high}
-
-
-@dataclass(frozen=True)
-class Version(Leaf):
-    """The version of the scenario format."""
-
-    supported: int
-
-    def parse(self, value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int | float) or value != self.supported:
-            rule = f"must be {self.supported}, the only scenario format this version reads"
-            raise ValueRefused(rule, plain(value), f"write `{self.supported}`")
-        return self.supported
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"const": self.supported}
-
-
-@dataclass(frozen=True)
-class Choice(Leaf):
-    """One of a few words."""
-
-    options: tuple[str, ...]
-
-    def parse(self, value: object) -> str:
-        if isinstance(value, str) and value in self.options:
-            return value
-        raise not_an_option(value, self.options)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"enum": list(self.options)}
-
-
-def not_an_option(value: object, options: Sequence[str]) -> ValueRefused:
-    """The refusal of a word that is none of `options`, with a guess at the intended one."""
-    listed = one_of(options)
-    rule = f"must be {listed}"
-    return ValueRefused(rule, plain(value), f"write {guess(value, options) or listed}")
-
-
-def one_of(options: Sequence[str]) -> str:
-    """``a, b or c``, each in back quotes."""
-    quoted = [f"`{option}`" for option in options]
-    return " or ".join([", ".join(quoted[:-1]), quoted[-1]] if len(quoted) > 1 else quoted)
-
-
-def guess(value: object, options: Sequence[str]) -> str:
-    """The closest option in back quotes, or empty."""
-    if not isinstance(value, str):
-        return ""
-    text = value.lower().replace("_", "-").replace(" ", "-")
-    plain_forms = {option.lower().replace("_", "-"): option for option in options}
-    near = difflib.get_close_matches(text, plain_forms, 1, cutoff=0.6)
-    return f"`{plain_forms[near[0]]}`" if near else ""
-
-
-@dataclass(frozen=True)
-class Text(Leaf):
-    """Text of at most `longest` characters; a `pattern` comes with the `words` that describe it."""
-
-    longest: int
-    pattern: str = ""
-    words: str = ""
-    repair: Callable[[str], str] | None = None
-
-    def parse(self, value: object) -> str:
-        rule = f"must be text of at most {self.longest} characters{self.words}"
-        if not isinstance(value, str):
-            quoted = isinstance(value, int | float)
-            written = str(value).lower() if isinstance(value, bool) else str(value)
-            fix = f'write it in quotes: `"{written}"`' if quoted else "write text"
-            raise ValueRefused(rule, plain(value), fix)
-        if len(value) > self.longest:
-            raise ValueRefused(rule, f"{len(value)} characters", "shorten it")
-        lone = well_formed(value)[1]
-        if lone:
-            raise ValueRefused("must be text that can be written as UTF-8", f"`{lone}` in it", "write it in UTF-8")
-        if self.pattern and not re.fullmatch(self.pattern, value):
-            better = self.repair(value) if self.repair else ""
-            raise ValueRefused(rule, plain(value), f"write `{better}`" if better else "write a name such as `stop-1`")
-        return value
-
-    def json_schema(self) -> dict[str, Any]:
-        pattern = {"pattern": f"^{self.pattern}$"} if self.pattern else {}
-        return {"type": "string", "maxLength": self.longest, **pattern}
-
-
-def file_safe(text: str) -> str:
-    """The nearest name that can be a folder: ``my stop/2`` becomes ``my-stop-2``."""
-    return re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("-._")[:100]
-
-
-NAME: Final = Text(
-    longest=100,
-    pattern=r"[A-Za-z0-9][A-Za-z0-9._-]*",
-    words=" that can name a folder: letters, digits, `.`, `-` and `_`, a letter or digit first",
-    repair=file_safe,
-)

@@ -2,46 +2,48 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Collection
+from functools import cache
 from typing import Any
 
-from pydantic_core import PydanticCustomError
-
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Quantity, SIValue
-from slosh_cli.scenario.schema_run import named_adhesion
-from slosh_cli.scenario.tree import leaves_of
+from slosh_cli.scenario.leaves import SIValue
+from slosh_cli.scenario.tree import Spot, spot_of
 
 
-def plain_data(part: Part, *, as_text: bool) -> dict[str, Any]:
-    """Mappings, lists and scalars that read back as `part`.
+def plain_data(part: Part, *, as_text: bool, kept: Collection[str] = ()) -> dict[str, Any]:
+    """Mappings, lists and scalars that read back as `part`, of a member of a union its tag first.
 
     With `as_text` every quantity is text in SI units and every default is written out; otherwise quantities
-    are SIValue and a number of modes that was not asked for stays away.
+    are SIValue. Parts in the fields `kept` stay parts.
     """
-    data: dict[str, Any] = {}
-    for name, leaf in leaves_of(type(part)):
-        value = getattr(part, name)
-        if value is None or (name == "modes" and not _modes_count(part, as_text)):
-            continue
-        if isinstance(leaf, Quantity):
-            data[name] = f"{value!r} {leaf.unit}" if as_text else SIValue(value)
-        elif isinstance(value, Part):
-            data[name] = plain_data(value, as_text=as_text)
-        elif isinstance(value, tuple):
-            data[name] = [_item(item, as_text) for item in value]
-        else:
-            data[name] = value
-    return {"shape": data.pop("shape"), **data} if "shape" in data else data
+    without = part.unwritten(as_text=as_text)
+    values = ((name, spot, getattr(part, name)) for name, spot in _spots(type(part)) if name not in without)
+    return {
+        name: value if name in kept and isinstance(value, Part) else _plain(value, spot, as_text)
+        for name, spot, value in values
+        if value is not None
+    }
 
 
-def _modes_count(part: Part, as_text: bool) -> bool:
-    """Whether to write the number of modes; beside given coefficients a file must not set it."""
-    return getattr(part, "coefficients", None) == "computed" and (as_text or "modes" in part.model_fields_set)
+@cache
+def _spots(model: type[Part]) -> tuple[tuple[str, Spot], ...]:
+    found = [(name, spot_of(model, name)) for name in model.model_fields]
+    return tuple(sorted(found, key=lambda entry: not entry[1].is_tag))
 
 
-def _item(item: Any, as_text: bool) -> Any:
-    return plain_data(item, as_text=as_text) if isinstance(item, Part) else list(item)
+def _plain(value: Any, spot: Spot | None, as_text: bool) -> Any:
+    if isinstance(value, Part):
+        return plain_data(value, as_text=as_text)
+    if spot is not None and spot.branches is not None:
+        spot = spot.chosen(value)
+    if spot is not None and spot.leaf is not None:
+        return spot.leaf.written(value, as_text=as_text)
+    if isinstance(value, tuple | list):
+        return [_plain(item, spot.inside(value, place) if spot else None, as_text) for place, item in enumerate(value)]
+    if isinstance(value, dict):
+        return {key: _plain(entry, spot.inside(value, key) if spot else None, as_text) for key, entry in value.items()}
+    return value
 
 
 def si_values(value: Any) -> Any:
@@ -55,13 +57,3 @@ def si_values(value: Any) -> Any:
     if isinstance(value, int | float) and not isinstance(value, bool):
         return SIValue(value)
     return value
-
-
-def unfold_adhesion(data: dict[str, Any], path: tuple[str, ...]) -> None:
-    """Write `dry`, `wet` or a number out as a mapping where an override is about to change one of its values."""
-    contact = data.get("contact")
-    if path[:2] != ("contact", "adhesion") or len(path) < 3 or not isinstance(contact, dict):
-        return
-    with suppress(PydanticCustomError):
-        named = named_adhesion(contact.get("adhesion"))
-        contact["adhesion"] = plain_data(named, as_text=True) if isinstance(named, Part) else named

@@ -1,54 +1,38 @@
 """A whole scenario: a tank wagon on a track and its stop, or a tank alone."""
 
-from typing import Annotated, Any, ClassVar, Final, Self
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Self
 
-from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
-from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import NAME, Text, Version
-from slosh_cli.scenario.rules import SCENARIO_RULES, TANK_RULES, Rule, broken_rules, values_of
-from slosh_cli.scenario.schema_run import ADHESIONS, Braking, Contact, Output, Solver, Track
-from slosh_cli.scenario.schema_tank import SHAPES, Tank
+from slosh_cli.scenario.document import Document
+from slosh_cli.scenario.loader import Root, read
+from slosh_cli.scenario.rules import Finding
+from slosh_cli.scenario.schema_modes import with_own_coefficients
+from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
+from slosh_cli.scenario.schema_run import Braking, Contact, Output, Solver, Track
+from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
-
-DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
-OWN: Final = "x-"
-"""Top-level keys that begin so are the author's own, a place for anchors: nobody reads them."""
-
-
-class Root(Part):
-    """What every scenario file begins with."""
-
-    rules: ClassVar[tuple[Rule, ...]] = ()
-
-    format: Annotated[int, Version(1)] = Field(description="Version of the scenario format: 1.")
-    name: Annotated[str, NAME] = Field(description="Short name of the scenario; results are kept in a folder of it.")
-    description: Annotated[str, Text(longest=2000)] = Field(
-        default="", description="What the scenario is, in a sentence or two."
-    )
-
-    @model_validator(mode="after")
-    def _check_rules(self) -> Self:
-        findings = broken_rules(values_of(self), self.rules)
-        if findings:
-            text = "; ".join(f"{'.'.join(map(str, f.path))} {f.rule}" for f in findings)
-            raise PydanticCustomError("rules", "{text}", {"text": text, "findings": findings})
-        return self
+from slosh_cli.scenario.yaml_text import parse
 
 
 class TankScenario(Root):
     """A tank alone. Every quantity is SI inside."""
 
-    rules: ClassVar[tuple[Rule, ...]] = TANK_RULES
+    rules = TANK_RULES
 
     tank: Tank = Field(description="The tank and what is in it.")
+
+    def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
+        tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
+        return self.model_copy(update={"tank": tank})
 
 
 class Scenario(Root):
     """One stop of a tank wagon. Values are of the whole wagon; every quantity is SI inside."""
 
-    rules: ClassVar[tuple[Rule, ...]] = SCENARIO_RULES
+    rules = STOP_RULES
 
     wagon: Wagon = Field(description="The wagon without its load.")
     tank: Tank = Field(description="The tank and what is in it.")
@@ -58,45 +42,67 @@ class Scenario(Root):
     solver: Solver = Field(default=Solver.model_construct(), description="Accuracy and patience.")
     output: Output = Field(default=Output.model_construct(), description="What is written.")
 
+    def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
+        tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
+        return self.model_copy(update={"tank": tank})
 
-def stop_parts() -> tuple[str, ...]:
-    """The keys that a stop needs beside its tank; a file with none of them describes a tank alone."""
-    fields = Scenario.model_fields.items()
-    return tuple(name for name, field in fields if field.is_required() and name not in TankScenario.model_fields)
+
+def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
+    """Read the scenario of a stop, from a file or, by its name where no such file exists, from the packaged ones.
+
+    `overrides` are texts ``key.path=VALUE`` with VALUE in YAML; all are applied, in order, before anything
+    is checked. Raises ScenarioError, which lists every mistake of the file and of the overrides.
+    """
+    document = read(path, overrides, _kind)
+    if _kind(document.data) is TankScenario:
+        rule = f"must describe a stop, with {', '.join(_stop_parts())} beside the tank"
+        fix = "add them, or use the file where a tank alone will do"
+        document.add(Finding((), rule, "a tank alone", fix))
+        TankScenario.of(document, str(path))
+    return Scenario.of(document, str(path))
+
+
+def load_tank_scenario(path: str | Path, overrides: Iterable[str] = ()) -> TankScenario:
+    """Read a tank: from a file with a tank alone, or from the scenario of a stop, checked as a whole.
+
+    Overrides and errors as in load_scenario.
+    """
+    found = load_any_scenario(path, overrides)
+    if isinstance(found, TankScenario):
+        return found
+    return TankScenario(format=found.format, name=found.name, description=found.description, tank=found.tank)
+
+
+def load_any_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario | TankScenario:
+    """Read a file of either kind: one with any of the wagon's parts is taken for a stop."""
+    document = read(path, overrides, _kind)
+    return _kind(document.data).of(document, str(path))
+
+
+def parse_scenario(text: str, name: str = "scenario") -> Scenario:
+    """The scenario of a stop from YAML text, as `scenario_to_yaml` writes it; `name` stands for the file."""
+    return Scenario.of(parse(text, name), name)
 
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema of a scenario file, of a stop or of a tank alone, for editors. Quantities are texts with a unit."""
-    schema = Scenario.model_json_schema()
-    definitions = schema["$defs"]
-    for shape in SHAPES.values():
-        tank = definitions[shape.__name__]
-        tank["required"] = ["shape", *tank["required"]]
-        given = next(form for form in tank["properties"]["coefficients"]["oneOf"] if form["type"] == "array")
-        given["minItems"] = 1
-    contact = definitions["Contact"]["properties"]
-    own = {"$ref": contact["adhesion"]["$ref"]}
-    mu0 = {"anyOf": definitions["Adhesion"]["properties"]["mu0"]["anyOf"]}
-    contact["adhesion"] |= {"anyOf": [{"enum": sorted(ADHESIONS)}, mu0, own]}
-    del contact["adhesion"]["$ref"]
-    for definition in (*definitions.values(), schema):
-        for entry in definition["properties"].values():
-            if entry.get("default", "") is None:  # computed: the description says how
-                del entry["default"]
-            elif "default" in entry and "x-unit" in entry:
-                entry["default"] = f"{entry['default']} {entry['x-unit']}"
-            elif isinstance(entry.get("default"), dict):
-                del entry["default"]
-    return {"$schema": DIALECT, **schema, **_by_kind(schema), "patternProperties": {f"^{OWN}": True}}
-
-
-def _by_kind(schema: dict[str, Any]) -> dict[str, Any]:
-    """What is required of a stop, and what a tank alone has not."""
-    parts = stop_parts()
+    schema, parts = Scenario.editor_schema(), _stop_parts()
     alone = [name for name in Scenario.model_fields if name not in TankScenario.model_fields and name not in parts]
-    return {
+    return schema | {
         "required": [name for name in schema["required"] if name not in parts],
         "if": {"anyOf": [{"required": [part]} for part in parts]},
         "then": {"required": list(parts), "properties": {"tank": {"required": ["bottom_height"]}}},
         "else": {"properties": dict.fromkeys(alone, False)},
     }
+
+
+def _stop_parts() -> tuple[str, ...]:
+    """The keys that a stop needs beside its tank; a file with none of them describes a tank alone."""
+    fields = Scenario.model_fields.items()
+    return tuple(name for name, field in fields if field.is_required() and name not in TankScenario.model_fields)
+
+
+def _kind(data: Any) -> type[Scenario | TankScenario]:
+    """What a file describes."""
+    alone = isinstance(data, dict) and "tank" in data and not any(part in data for part in _stop_parts())
+    return TankScenario if alone else Scenario

@@ -1,13 +1,15 @@
 """Track, contact, braking, solver and output: everything of a stop that is neither wagon nor tank."""
 
-from typing import Annotated, Any, Final
+from collections.abc import Iterator
+from typing import Annotated, Final
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Number, Quantity, Range, guess, refused_error
-from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.leaves import Number, Quantity, Range
+from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.short import Short
+from slosh_cli.scenario.units import at_most, shown
 
 
 class Rail(Part):
@@ -67,8 +69,17 @@ class Track(Part):
 _FRICTION: Final = Number(Range(0.005, 1.5), "0.55")
 
 
+def _slip_below_area(v: Values) -> Iterator[Finding]:
+    if v.has("kA", "kS") and v["kS"] > v["kA"]:
+        most = at_most(v["kA"])
+        fix = f"write `{most}` or less, or exchange kA and kS"
+        yield Finding(("kS",), f"must be at most kA, {most}", f"`{shown(v['kS'])}`", fix)
+
+
 class Adhesion(Part):
     """Parameters of Polach's creep force law, mu = mu0 ((1 - A) exp(-B v) + A)."""
+
+    rules = (_slip_below_area,)
 
     mu0: Annotated[float, _FRICTION] = Field(description="Coefficient of friction at zero slip velocity.")
     A: Annotated[float, Number(Range(0.0, 1.0), "0.4")] = Field(
@@ -92,9 +103,6 @@ ADHESIONS: dict[str, Adhesion] = {
 """Polach's sets for dry and wet rail (Wear 258, 2005)."""
 
 
-_EXAMPLE: Final = "{mu0: 0.55, A: 0.4, B: 0.6 s/m, kA: 1.0, kS: 0.4}"
-
-
 def coulomb_adhesion(coefficient: float) -> Adhesion:
     """Plain Coulomb friction with a constant `coefficient`, in the parameters of Polach's law.
 
@@ -104,25 +112,6 @@ def coulomb_adhesion(coefficient: float) -> Adhesion:
     to 110 kN, where eps is 85 to 190 over mu, that is 3e-6 of mu N at most for mu = 1.5 and 3e-9 for 0.15.
     """
     return Adhesion.model_construct(mu0=coefficient, A=1.0, B=0.0, kA=1.0, kS=1.0)
-
-
-def named_adhesion(value: Any) -> Any:
-    """The parameter set behind `dry`, `wet` and a coefficient of friction; a mapping is passed on."""
-    if isinstance(value, str) and value in ADHESIONS:
-        return ADHESIONS[value]
-    if isinstance(value, dict | Adhesion):
-        return value
-    rule = "must be `dry`, `wet`, a coefficient of friction from 0.005 to 1.5 or a mapping of mu0, A, B, kA and kS"
-    likely = guess(value, tuple(ADHESIONS))
-    if likely:
-        raise refused_error(ValueRefused(rule, plain(value), f"write {likely}"))
-    try:
-        return coulomb_adhesion(_FRICTION.parse(value))
-    except ValueRefused as refused:
-        fix = refused.fix
-        if not isinstance(value, int | float) and not (isinstance(value, str) and value[:1].isdigit()):
-            fix = f"write `dry` or `wet`, or something such as `0.15` or `{_EXAMPLE}`"
-        raise refused_error(ValueRefused(rule, refused.given, fix)) from None
 
 
 class Contact(Part):
@@ -140,10 +129,10 @@ class Contact(Part):
     kalker_c11: Annotated[float, Number(Range(0.1, 100.0), "4.12")] = Field(
         description="Kalker's longitudinal creep coefficient."
     )
-    adhesion: Annotated[Adhesion, BeforeValidator(named_adhesion)] = Field(
-        description="`dry`, `wet`, a coefficient of plain Coulomb friction, or Polach's parameters in a mapping.",
-        examples=["dry", "wet", 0.15],
-    )
+    adhesion: Annotated[
+        Adhesion,
+        Short(ADHESIONS, _FRICTION, coulomb_adhesion, "a coefficient of friction from 0.005 to 1.5", "0.15"),
+    ] = Field(description="`dry`, `wet`, a coefficient of plain Coulomb friction, or Polach's parameters in a mapping.")
     stiffness: Annotated[float | None, Quantity("contact_stiffness", Range(1e7, 1e15), "9.4e10 N/m^1.5")] = Field(
         default=None,
         description="Hertzian contact stiffness of one wheel, N/m^1.5, instead of the computed one.",

@@ -1,18 +1,17 @@
 """The tank: shape, filling, liquid and slosh coefficients."""
 
+from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.alias import Alias, Aliased
-from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Choice, Count, Number, Quantity, Range, not_an_option, refused_error
-from slosh_cli.scenario.polygon import Outline
+from slosh_cli.scenario.base import Alias, Aliased, Part
+from slosh_cli.scenario.leaves import Check, Count, Number, Quantity, Range
+from slosh_cli.scenario.schema_polygon import Outline
 from slosh_cli.scenario.units import plain
-
-LiquidModel: TypeAlias = Literal["rigid", "modal", "shallow-water"]
-Point: TypeAlias = tuple[float, float]
+from slosh_cli.scenario.words import Choice
 
 _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
 
@@ -20,7 +19,7 @@ _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
 class Liquid(Part):
     """What is in the tank and how it moves."""
 
-    model: Annotated[LiquidModel, Choice(("rigid", "modal", "shallow-water"))] = Field(
+    model: Annotated[Literal["rigid", "modal", "shallow-water"], Choice(("rigid", "modal", "shallow-water"))] = Field(
         description="`rigid`: the equivalent solid load. `modal`: a free surface, by linear slosh modes. "
         "`shallow-water`: a free surface with a roof and a bottom, for long tanks."
     )
@@ -58,31 +57,32 @@ class Coefficient(Part):
     damping_ratio: Annotated[float, _DAMPING] = Field(default=0.0, description="Damping ratio of the mode.")
 
 
-def _check_coefficients(value: Any) -> Any:
-    if isinstance(value, list | tuple) and value:
-        return value
-    if value == "computed":
-        return value
-    if isinstance(value, str):
-        refused = not_an_option(value, ("computed",))
-        rule, given, fix = "must be `computed` or a list of slosh modes", refused.given, refused.fix
-    elif isinstance(value, dict):
-        rule, given = "must be `computed` or a list of slosh modes", "a mapping"
-        fix = "write each mode as a list item: `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}`"
-    else:
-        rule, given = "must be `computed` or a list of at least one slosh mode", plain(value)
-        fix = "write `computed`, or `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}` for each mode"
-    raise refused_error(ValueRefused(rule, given, fix))
+@dataclass(frozen=True)
+class _ComputedOrGiven(Check):
+    def parse(self, value: object) -> Any:
+        if (isinstance(value, list | tuple) and value) or value == "computed":
+            return value
+        if isinstance(value, str):
+            refused = Choice(("computed",)).refusal(value)
+            rule, given, fix = "must be `computed` or a list of slosh modes", refused.given, refused.fix
+        elif isinstance(value, dict):
+            rule, given = "must be `computed` or a list of slosh modes", "a mapping"
+            fix = "write each mode as a list item: `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}`"
+        else:
+            rule, given = "must be `computed` or a list of at least one slosh mode", plain(value)
+            fix = "write `computed`, or `- {frequency: ..., lambda_1: ..., lambda_02: ..., mu: ...}` for each mode"
+        raise ValueRefused(rule, given, fix)
 
 
 def _coefficient_kind(value: Any) -> str:
     return "computed" if isinstance(value, str) else "given"
 
 
-Coefficients: TypeAlias = Annotated[
-    Annotated[Literal["computed"], Tag("computed")] | Annotated[tuple[Coefficient, ...], Tag("given")],
+_Coefficients: TypeAlias = Annotated[
+    Annotated[Literal["computed"], Tag("computed")]
+    | Annotated[tuple[Coefficient, ...], Field(min_length=1), Tag("given")],
     Discriminator(_coefficient_kind),
-    BeforeValidator(_check_coefficients),
+    _ComputedOrGiven(),
 ]
 
 
@@ -112,7 +112,7 @@ class TankBase(Aliased):
         "Required with a wagon, without meaning for a tank alone.",
     )
     liquid: Liquid = Field(description="What is in the tank.")
-    coefficients: Coefficients = Field(
+    coefficients: _Coefficients = Field(
         default="computed",
         description="`computed` from the tank's geometry, or a list of slosh modes to be used as they are.",
     )
@@ -123,6 +123,11 @@ class TankBase(Aliased):
     baffles: tuple[Baffle, ...] = Field(
         default=(), description="Transverse walls, closed or with openings; the modal liquid knows none."
     )
+
+    def unwritten(self, *, as_text: bool) -> Collection[str]:
+        """The number of modes beside given coefficients, where a file must not set it, or where nobody asked for it."""
+        counts = self.coefficients == "computed" and (as_text or "modes" in self.model_fields_set)
+        return () if counts else ("modes",)
 
 
 class HorizontalCylinder(TankBase):
@@ -172,7 +177,7 @@ class Polygon(TankBase):
     """A tank of any straight-sided cross-section that is symmetric about its upright centre line."""
 
     shape: Literal["polygon"] = Field(default="polygon", description="Cross-section: a polygon.")
-    points: Annotated[tuple[Point, ...], Outline(20.0)] = Field(
+    points: Annotated[tuple[tuple[float, float], ...], Outline(20.0)] = Field(
         description="Corners [y, z] in order around the section, m: y from the centre, z from the bottom."
     )
 
@@ -188,9 +193,3 @@ class Polygon(TankBase):
 
 
 Tank: TypeAlias = Annotated[HorizontalCylinder | Rectangular | Elliptical | Polygon, Field(discriminator="shape")]
-SHAPES: dict[str, type[TankBase]] = {
-    "horizontal-cylinder": HorizontalCylinder,
-    "rectangular": Rectangular,
-    "elliptical": Elliptical,
-    "polygon": Polygon,
-}

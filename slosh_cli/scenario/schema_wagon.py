@@ -4,12 +4,11 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from slosh_cli.scenario.alias import Alias, Aliased
-from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.base import Alias, Aliased, Part
 from slosh_cli.scenario.leaves import Quantity, Range
 
-Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
-Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
+_Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
+_Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
 
 
 class CarBody(Part):
@@ -62,8 +61,8 @@ class Wheelset(Aliased):
 class Suspension(Part):
     """One suspension unit of the planar model: one wheel (primary) or one side of one bogie (secondary)."""
 
-    stiffness: Stiffness = Field(description="Vertical stiffness of one unit, N/m.")
-    damping: Damping = Field(description="Vertical viscous damping of one unit, N s/m.")
+    stiffness: _Stiffness = Field(description="Vertical stiffness of one unit, N/m.")
+    damping: _Damping = Field(description="Vertical viscous damping of one unit, N s/m.")
 
 
 class RunningResistance(Part):

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.base import Path
 from slosh_cli.scenario.leaves import Leaf
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.units import numeral_of, plain
-
-Path = tuple[str | int, ...]
 
 
 def rejoined(

@@ -9,12 +9,12 @@ from typing import Any, Final
 import yaml
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario.document import Document, Origin, Path
+from slosh_cli.scenario.base import OWN, Path
+from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.scalars import plain_scalar, well_formed
-from slosh_cli.scenario.schema import OWN
 from slosh_cli.scenario.units import plain
 
-MOST_VALUES: Final = 20_000
+_MOST_VALUES: Final = 20_000
 """Values of a file, with its aliases written out; stops a few lines from unfolding into gigabytes."""
 
 
@@ -23,7 +23,7 @@ _KNOWN_TAGS = {
     for name in ("null", "bool", "int", "float", "str", "timestamp", "map", "seq", "value", "merge")
 }
 _MERGE = "tag:yaml.org,2002:merge"
-_TREE = f"must be a tree of at most {MOST_VALUES} values"
+_TREE = f"must be a tree of at most {_MOST_VALUES} values"
 _WRITE_OUT = "write the values out where they belong"
 
 
@@ -66,7 +66,7 @@ class _Loader(yaml.SafeLoader):
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         """Compose one node; gives up where a file has too many, before all of it has been read."""
         self.composed += 1
-        if self.composed > MOST_VALUES:
+        if self.composed > _MOST_VALUES:
             raise _TooManyValuesError(problem="too many values", problem_mark=self.get_mark())
         return super().compose_node(parent, index)
 
@@ -91,8 +91,8 @@ class _Builder:
         line = None if self.override else written_at.start_mark.line + 1
         self.document.origins[path] = Origin(line, self.override)
         looped = id(node) in self.open
-        if looped or self.count > MOST_VALUES:
-            if looped or self.count == MOST_VALUES + 1:
+        if looped or self.count > _MOST_VALUES:
+            if looped or self.count == _MOST_VALUES + 1:
                 given = "an alias that contains itself" if looped else "more, by aliases or written out"
                 self.problem(written_at, path, _TREE, given, _WRITE_OUT)
             return None

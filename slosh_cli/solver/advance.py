@@ -308,6 +308,27 @@ def _judge(train, rows, step, error):
     return outcome
 
 
+@inner_kernel
+def _choose(train, rows):
+    """Choose the step to try, unless there is one; a break of the brakes that is due is passed first.
+
+    Returns how the run goes on.
+    """
+    if train.trying > 0.0:
+        return RUNNING
+    if train.time >= train.control.time_limit:
+        return TIME_LIMIT
+    if train.time >= _next_break(train):
+        _pass_breaks(train)
+        _note_event(train)
+        return RUNNING
+    step = _limited_step(train)
+    if not _has_room(train, rows, step):
+        return ROWS_FULL
+    train.trying, train.event_tries, train.shortened = step, 0, 0
+    return RUNNING
+
+
 @kernel
 def advance(train: Train, rows: Cube, most_tries: int) -> int:
     """Run until the train stops, something ends the run, `rows` is full, or `most_tries` more steps were tried."""
@@ -320,19 +341,10 @@ def advance(train: Train, rows: Cube, most_tries: int) -> int:
             train.jumped = 0
             if train.initial_kinetic == 0.0:
                 _open_ledger(train)
-        if train.trying == 0.0:
-            if train.time >= train.control.time_limit:
-                return TIME_LIMIT
-            if train.time >= _next_break(train):
-                _pass_breaks(train)
-                _note_event(train)
-                continue
-            train.trying, train.event_tries, train.shortened = _limited_step(train), 0, 0
-            if not _has_room(train, rows, train.trying):
-                train.trying = 0.0
-                return ROWS_FULL
+        outcome: int = _choose(train, rows)
         step = train.trying
-        outcome: int = _judge(train, rows, step, take_step(train, step))
+        if outcome == RUNNING and step > 0.0:
+            outcome = _judge(train, rows, step, take_step(train, step))
         if outcome != RUNNING:
             return outcome
     return RUNNING

@@ -91,7 +91,16 @@ def take_step(train, step):
         _guess(vehicles[k], END, 1.0 / GAMMA)
     if not solve_stage(train, END, implicit, time + step):
         return -1.0
-    error, tolerance = 0.0, train.control.local_tolerance
+    return _rate(train, step)
+
+
+@inner_kernel
+def _rate(train, step):
+    """Error of the step over the allowed one, negative where a liquid could not be carried through it.
+
+    Where it is small enough, the powers of middle and end and the energies at the end are filled in.
+    """
+    vehicles, error, tolerance = train.vehicles, 0.0, train.control.local_tolerance
     for k in range(len(vehicles)):
         vehicle = vehicles[k]
         error = max(error, _error(vehicle, step, tolerance))

@@ -12,7 +12,7 @@ from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.unit_names import UnknownUnit, standard_unit
 from slosh_cli.scenario.units import NUMBER_PATTERN, numeral_of, percentage
 
-MOST_VALUES: Final = 100_000
+_MOST_VALUES: Final = 100_000
 """Values of one axis; more are a slip in the step."""
 
 _MEASURE = re.compile(rf"({NUMBER_PATTERN})\s*([^\s0-9.,:\[{{][^:]*|)")
@@ -64,7 +64,7 @@ def _told(text: str) -> tuple[float, str] | None:
         return measured(text)
 
 
-def values_of(spec: str, bare_unit: str = "") -> tuple[str, ...]:
+def expanded(spec: str, bare_unit: str = "") -> tuple[str, ...]:
     """The values that a list (``80,160``, ``dry,wet``) or a range (``start:stop:step``, both ends in) stands for.
 
     A bare number takes the unit of the next entry that has one (``10,12,14 m``), else `bare_unit`.
@@ -88,11 +88,20 @@ def values_of(spec: str, bare_unit: str = "") -> tuple[str, ...]:
     return tuple(dict.fromkeys(value for group in reversed(groups) for value in group))
 
 
-def listed(values: Sequence[Any]) -> tuple[str, ...]:
+def _listed(values: Sequence[Any]) -> tuple[str, ...]:
     """The values of a list in a study file, as texts. Raises ValueRefused where a value has no text."""
     if not values:
         raise ValueRefused("must be a list of at least one value", "an empty list", "write the values to take")
     return tuple(dict.fromkeys(_as_text(value) for value in values))
+
+
+def axis_values(spec: Any) -> tuple[str, ...]:
+    """The values that a study file or a script gives: a text as for `expanded`, any other value, a list of both."""
+    if isinstance(spec, str):
+        return expanded(spec)
+    entries = spec if isinstance(spec, list | tuple) else [spec]
+    groups = [expanded(entry) if isinstance(entry, str) else _listed([entry]) for entry in entries]
+    return _listed([text for group in groups for text in group])
 
 
 def _as_text(value: Any) -> str:
@@ -136,8 +145,8 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
     if step == 0 or (stop - start) * step < 0:
         rule = "must have a step that leads from start to stop"
         raise ValueRefused(rule, given, "write a step of the right sign, not zero")
-    if abs(stop - start) > (MOST_VALUES - 1) * abs(step):
-        raise ValueRefused(f"must have at most {MOST_VALUES} values", given, "widen the step")
+    if abs(stop - start) > (_MOST_VALUES - 1) * abs(step):
+        raise ValueRefused(f"must have at most {_MOST_VALUES} values", given, "widen the step")
     count = round((stop - start) / step)
     if abs((stop - start) / step - count) > Decimal("1e-9") * max(count, 1):
         last = f"{_decimal(start + int((stop - start) / step) * step)}:{_decimal(step)}{unit and f' {unit}'}"

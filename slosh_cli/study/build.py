@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from slosh_cli.errors import UsageError, ValueRefused
-from slosh_cli.scenario import Scenario, find_packaged, load_scenario
-from slosh_cli.study.axis import Axis, values_of
-from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study, with_axes
+from slosh_cli.scenario import Scenario, find_packaged, load_scenario, scenario_to_yaml
+from slosh_cli.scenario.yaml_text import parse
+from slosh_cli.study.axis import Axis, axis_values, expanded, measured
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 from slosh_cli.study.study_file import is_study_file, read_study_file
 
-PAPER_WAGON: Final = "paper-80-liquid"
+_PAPER_WAGON: Final = "paper-80-liquid"
 """The packaged scenario that a study without one is about."""
-PAPER_STUDY: Final = "paper-wagon"
+_PAPER_STUDY: Final = "paper-wagon"
 """Name of a study without a scenario."""
-SPEEDS: Final = "80,160"
-TORQUES: Final = "2.5:30:2.5"
+_SPEEDS: Final = "80,160"
+_TORQUES: Final = "2.5:30:2.5"
 
 
 @dataclass(frozen=True)
@@ -44,28 +45,49 @@ def build(wishes: Wishes) -> Study:
     or torques without speeds, bring the other's range of that grid along. What is not varied is the scenario's own.
     Raises ScenarioError and UsageError for what is wrong with it, as far as that shows without running anything.
     """
-    file, name, base, axes = _source(wishes)
-    axes = with_axes(axes, [_parsed(text) for text in wishes.vary])
-    axes = with_axes(axes, _braking_axes(wishes, axes))
+    file, name, base, axes = _source(wishes.file, wishes.overrides)
+    axes = _with_axes(axes, [_parsed(text) for text in wishes.vary])
+    return _completed(wishes, file, name, base, axes)
+
+
+def grid(
+    scenario: Scenario | str | Path | None = None, vary: Mapping[str, Any] | None = None, *, histories: bool = False
+) -> Study:
+    """The study of a script: a scenario, or the file of a scenario or study, and `vary`, key path -> values.
+
+    Values are a list or a range as a text, or a sequence; a number in it is an SI value. What is not given is completed
+    as by `build`, and so are the errors.
+    """
+    file, name, base, axes = _source(scenario, ())
+    axes = _with_axes(axes, [_given(base, key, spec) for key, spec in (vary or {}).items()])
+    return _completed(Wishes(histories=histories), file, name, base, axes)
+
+
+def _completed(wishes: Wishes, file: str, name: str, base: Scenario, axes: tuple[Axis, ...]) -> Study:
+    axes = _with_axes(axes, _braking_axes(wishes, axes))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
     return Study(name, base, axes, file, wishes.histories)
 
 
 def paper_wagon() -> Scenario:
     """The wagon of the paper as it comes with the program."""
-    return load_scenario(find_packaged(PAPER_WAGON))
+    return load_scenario(find_packaged(_PAPER_WAGON))
 
 
-def _source(wishes: Wishes) -> tuple[str, str, Scenario, tuple[Axis, ...]]:
+def _source(
+    source: Scenario | str | Path | None, overrides: Sequence[str]
+) -> tuple[str, str, Scenario, tuple[Axis, ...]]:
     """What messages call the source, the study's name, the base scenario and the axes of a study file."""
-    if wishes.file is None:
-        wagon = load_scenario(find_packaged(PAPER_WAGON), wishes.overrides)
-        return PAPER_STUDY, PAPER_STUDY if wagon.name == PAPER_WAGON else wagon.name, wagon, ()
-    if is_study_file(wishes.file):
-        study = read_study_file(wishes.file)
-        return str(wishes.file), study.name, load_scenario(study.base, wishes.overrides), study.axes
-    scenario = load_scenario(wishes.file, wishes.overrides)
-    return str(wishes.file), scenario.name, scenario, ()
+    if source is None:
+        wagon = load_scenario(find_packaged(_PAPER_WAGON), overrides)
+        return _PAPER_STUDY, _PAPER_STUDY if wagon.name == _PAPER_WAGON else wagon.name, wagon, ()
+    if isinstance(source, Scenario):
+        return source.name, source.name, source, ()
+    if is_study_file(Path(source)):
+        study = read_study_file(Path(source))
+        return str(source), study.name, load_scenario(study.base, overrides), study.axes
+    scenario = load_scenario(source, overrides)
+    return str(source), scenario.name, scenario, ()
 
 
 def _braking_axes(wishes: Wishes, axes: Sequence[Axis]) -> list[Axis]:
@@ -75,8 +97,8 @@ def _braking_axes(wishes: Wishes, axes: Sequence[Axis]) -> list[Axis]:
         if spec is not None and any(text.partition("=")[0].strip() == key for text in wishes.vary):
             raise UsageError(f"{option} and --vary {key} ask for the same; leave one of them out", option)
     figure = (wishes.speeds, wishes.torques) != (None, None) or not axes
-    speeds = SPEEDS if wishes.speeds is None and figure and SPEED not in varied else wishes.speeds
-    torques = TORQUES if wishes.torques is None and figure and TORQUE not in varied else wishes.torques
+    speeds = _SPEEDS if wishes.speeds is None and figure and SPEED not in varied else wishes.speeds
+    torques = _TORQUES if wishes.torques is None and figure and TORQUE not in varied else wishes.torques
     found = []
     if speeds is not None:
         found.append(_axis(SPEED, speeds, "--v0", "km/h"))
@@ -105,6 +127,34 @@ def _parsed(text: str) -> Axis:
 
 def _axis(key: str, spec: str, option: str, bare_unit: str = "") -> Axis:
     try:
-        return Axis(key, values_of(spec, bare_unit), option)
+        return Axis(key, expanded(spec, bare_unit), option)
     except ValueRefused as refused:
         raise UsageError(f"{option} {refused}", option) from None
+
+
+def _given(base: Scenario, key: str, spec: Any) -> Axis:
+    """The axis of a script's `spec`; arrays of NumPy will do."""
+    found = spec.tolist() if hasattr(spec, "tolist") else spec
+    entries = found if isinstance(found, list | tuple) else [found]
+    try:
+        return Axis(key, axis_values([_with_unit(base, key, entry) for entry in entries]), f"vary {key}")
+    except ValueRefused as refused:
+        raise UsageError(f"vary {key} {refused}", f"vary {key}") from None
+
+
+def _with_unit(base: Scenario, key: str, value: Any) -> Any:
+    """A number with the SI unit in which the scenario tells its own value of `key`; anything else as it is."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    own: Any = parse(scenario_to_yaml(base), base.name).data
+    for step in key.split("."):
+        own = own.get(step) if isinstance(own, dict) else None
+    told = measured(own) if isinstance(own, str) else None
+    return f"{value!r} {told[1]}" if told else value
+
+
+def _with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
+    """`axes`, then `others`; one of these that shares its key with one of those takes its place."""
+    found = {axis.key: axis for axis in axes}
+    found |= {axis.key: axis for axis in others}
+    return tuple(found.values())

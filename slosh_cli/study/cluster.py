@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.errors import SloshError, UsageError
 from slosh_cli.study.key import RESULT_VERSION
-from slosh_cli.study.outcome import Outcome, failed, solve
+from slosh_cli.study.outcome import FinishedStop, failed, solve
 from slosh_cli.study.plan import Stop
 from slosh_cli.version import __version__, install_command
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-Batch = tuple[Stop, ...]
-Future = Any
+_Batch = tuple[Stop, ...]
+_Future = Any
 """A future of Dask, which carries no types."""
 
-BATCH_SECONDS: Final = 4.0
+_BATCH_SECONDS: Final = 4.0
 """Work of a batch in s: long beside what the scheduler spends on it, short enough to lose with a worker."""
 _FIRST_BATCH: Final = 4
 _LARGEST_BATCH: Final = 1000
@@ -51,14 +51,14 @@ class ClusterError(SloshError):
     code = "cluster"
 
 
-def solve_batch(batch: Batch, needed: str) -> list[Outcome]:
+def _solve_batch(batch: _Batch, needed: str) -> list[FinishedStop]:
     """What a worker does. Raises ClusterError where its version of slosh is not the `needed` one."""
-    if needed != this_version():
-        raise ClusterError(f"a worker has {this_version()}, but the study needs {needed}; install the same there")
+    if needed != _this_version():
+        raise ClusterError(f"a worker has {_this_version()}, but the study needs {needed}; install the same there")
     return [solve(stop) for stop in batch]
 
 
-def this_version() -> str:
+def _this_version() -> str:
     """Program and result version that both ends must share."""
     return f"slosh {__version__} (results {RESULT_VERSION})"
 
@@ -84,8 +84,8 @@ class Cluster:
             )
         except (OSError, ValueError, TimeoutError) as error:
             raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--cluster") from None
-        self._batches: dict[Any, Batch] = {}
-        self._done: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._batches: dict[Any, _Batch] = {}
+        self._done: queue.SimpleQueue[_Future] = queue.SimpleQueue()
         self._seconds: deque[float] = deque(maxlen=64)
         self._threads, self._counted = 0, -math.inf
 
@@ -112,7 +112,7 @@ class Cluster:
         """Threads of all workers there are now, at least one."""
         return max(self._all_threads(), 1)
 
-    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[FinishedStop], None, None]:
         """Outcomes batch by batch, in no particular order. `cancel` gives up what is on its way and ends the iteration.
 
         The batch of a worker that dies goes to another one; a stop that takes worker after worker with it ends as
@@ -135,12 +135,12 @@ class Cluster:
                 future.cancel()
             self._batches.clear()
 
-    def _next_batches(self, stops: Iterator[Stop], left: int) -> Iterator[Batch]:
+    def _next_batches(self, stops: Iterator[Stop], left: int) -> Iterator[_Batch]:
         """Batches until enough are on their way, smaller towards the end so that all workers end together."""
         self._count_threads()
         while len(self._batches) < _IN_HAND * max(self._threads, 1):
             share = math.ceil(left / (_IN_HAND * max(self._threads, 1)))
-            wanted = round(BATCH_SECONDS / median(self._seconds)) if self._seconds else _FIRST_BATCH
+            wanted = round(_BATCH_SECONDS / median(self._seconds)) if self._seconds else _FIRST_BATCH
             batch = tuple(islice(stops, max(1, min(share, wanted, _LARGEST_BATCH))))
             if not batch:
                 return
@@ -157,16 +157,16 @@ class Cluster:
         with self._connection():
             return int(sum(self._client.nthreads().values()))
 
-    def _send(self, batch: Batch) -> None:
+    def _send(self, batch: _Batch) -> None:
         with self._connection():
-            future = self._client.submit(solve_batch, batch, this_version(), pure=False)
+            future = self._client.submit(_solve_batch, batch, _this_version(), pure=False)
         self._await(future, batch)
 
-    def _await(self, future: Future, batch: Batch) -> None:
+    def _await(self, future: _Future, batch: _Batch) -> None:
         self._batches[future] = batch
         future.add_done_callback(self._done.put)
 
-    def _wait(self) -> Future | None:
+    def _wait(self) -> _Future | None:
         """The next future that has ended; None when nothing happens for a moment."""
         try:
             return self._done.get(timeout=_POLL_SECONDS)
@@ -175,7 +175,7 @@ class Cluster:
                 raise self._lost() from None
             return None
 
-    def _received(self, future: Future) -> Iterator[list[Outcome]]:
+    def _received(self, future: _Future) -> Iterator[list[FinishedStop]]:
         """The outcomes of a batch, or the batch sent again stop by stop where it killed its workers."""
         batch = self._batches.pop(future, ())
         if future.status in ("lost", "pending"):  # its worker died with it: the scheduler has it computed again
@@ -186,7 +186,7 @@ class Cluster:
         error: Any = future.exception() if future.status == "error" else None
         if error is None:
             with self._connection():  # the outcomes come from the worker only now, by way of the scheduler
-                outcomes: list[Outcome] = future.result()
+                outcomes: list[FinishedStop] = future.result()
             self._seconds.extend(max(outcome.seconds, 1e-3) for outcome in outcomes)
             yield outcomes
         elif not isinstance(error, self._dask.KilledWorker):

@@ -18,18 +18,18 @@ from typing import Any, Final, Self
 
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Status
-from slosh_cli.study.outcome import Outcome
+from slosh_cli.study.outcome import FinishedStop
 from slosh_cli.version import __version__
 
 JOURNAL: Final = "journal.sqlite"
-FORMAT: Final = 1
+_FORMAT: Final = 1
 
 _TABLES: Final = (
     "CREATE TABLE session (id INTEGER PRIMARY KEY, started TEXT NOT NULL, program TEXT NOT NULL, sources TEXT NOT NULL,"
     " circumstances TEXT NOT NULL)",
     "CREATE TABLE stop (key TEXT PRIMARY KEY, status TEXT NOT NULL, final INTEGER NOT NULL, seconds REAL NOT NULL,"
     " finished TEXT NOT NULL, session INTEGER NOT NULL REFERENCES session (id), answer TEXT NOT NULL)",
-    f"PRAGMA user_version = {FORMAT}",
+    f"PRAGMA user_version = {_FORMAT}",
 )
 _ADD: Final = (
     "INSERT INTO stop (key, status, final, seconds, finished, session, answer) VALUES (?, ?, ?, ?, ?, ?, ?)"
@@ -63,9 +63,18 @@ class Journal:
         with suppress(sqlite3.Error):  # closing tidies the log up; on a full disk it may stay
             self._file.close()
 
+    @staticmethod
+    def remove(path: Path) -> None:
+        """Remove a journal with its log. Raises FileError."""
+        try:
+            for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
+                path.with_name(name).unlink(missing_ok=True)
+        except OSError as error:
+            raise FileError(f"cannot remove {path}: {error.strerror or error}", str(path)) from error
+
     def _open(self, *, read_only: bool) -> None:
         (found,) = self._file.execute("PRAGMA user_version").fetchone()
-        if found not in (0, FORMAT):
+        if found not in (0, _FORMAT):
             raise FileError(f"{self.path} is the journal of another version of slosh (format {found})", str(self.path))
         if read_only:
             return
@@ -106,7 +115,7 @@ class Journal:
             found = self._file.execute("SELECT axes FROM study").fetchone()
             return dict(json.loads(found[0])) if found else None
 
-    def add(self, outcomes: Sequence[Outcome]) -> None:
+    def add(self, outcomes: Sequence[FinishedStop]) -> None:
         """Commit finished stops; on return they are on the disk."""
         now = _now()
         rows = [
@@ -174,15 +183,6 @@ def _answer(text: str) -> dict[str, Any]:
     """A row as it was committed, its status by the name it has today."""
     answer = dict(json.loads(text))
     return answer | {"status": str(Status(answer["status"]))}
-
-
-def remove(path: Path) -> None:
-    """Remove a journal with its log. Raises FileError."""
-    try:
-        for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
-            path.with_name(name).unlink(missing_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot remove {path}: {error.strerror or error}", str(path)) from error
 
 
 def _now() -> str:

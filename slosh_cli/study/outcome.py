@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.errors import SloshError
-from slosh_cli.results.tables import summary_row
-from slosh_cli.study.plan import Stop, tidy
+from slosh_cli.results.answers import Shown
+from slosh_cli.results.result import Result
+from slosh_cli.study.plan import Stop
 
 if TYPE_CHECKING:
-    from slosh_cli.results.result import Result
-    from slosh_cli.scenario import Scenario
     from slosh_cli.solver.run import Cancel
-
-_NOT_THE_ANSWER = ("name", "solve_seconds")
-"""Columns of a summary that the same stop does not repeat."""
-_NOT_THE_LIQUID = ("wheels lifted off", "pitch beyond small angles")
-"""Checks of the model's range that are not about the liquid."""
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FinishedStop:
     """A finished stop.
 
     answer: column (with unit) -> value, always with speed, torque, liquid, status and reason.
@@ -43,7 +38,7 @@ class Outcome:
         return str(self.answer["status"])
 
 
-def solve(stop: Stop, cancel: Cancel | None = None) -> Outcome:
+def solve(stop: Stop, cancel: Cancel | None = None) -> FinishedStop:
     """Compute a stop; a failure is an outcome too. Raises Cancelled when `cancel` is set before the end."""
     from slosh_cli.results.simulate import simulate
     from slosh_cli.solver.run import Cancelled
@@ -59,34 +54,17 @@ def solve(stop: Stop, cancel: Cancel | None = None) -> Outcome:
         reason = f"the program failed: {type(error).__name__}: {error}"
         return failed(stop, reason, final=False, seconds=time.perf_counter() - began)
     seconds = time.perf_counter() - began
-    return Outcome(stop.index, stop.key, _answer(result), True, seconds, result if stop.history else None)
+    return FinishedStop(stop.index, stop.key, result.row(Shown.STUDY), True, seconds, result if stop.history else None)
 
 
-def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> Outcome:
+def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> FinishedStop:
     """The outcome of a stop that ended without a result."""
-    return Outcome(stop.index, stop.key, without_result(conditions(stop.scenario), reason), final, seconds)
+    given = [one for one in Result.in_table(Shown.STUDY) if one.given]
+    cells = (one.cells(attrgetter(one.given)(stop.scenario)) for one in given)
+    conditions = {column: value for some in cells for column, value in some.items()}
+    return FinishedStop(stop.index, stop.key, without_result(conditions, reason), final, seconds)
 
 
 def without_result(conditions: dict[str, Any], reason: str) -> dict[str, Any]:
     """The row of a stop that has nothing to tell but its `conditions` and why."""
     return conditions | {"status": "failed", "reason": " ".join(reason.split())}
-
-
-def conditions(scenario: Scenario) -> dict[str, Any]:
-    """Speed, torque and model of the load: the columns every row has."""
-    return {
-        "v0_km_h": tidy(scenario.braking.initial_speed * 3.6),
-        "torque_kN_m": tidy(scenario.braking.torque / 1e3),
-        "liquid": str(scenario.tank.liquid.model),
-    }
-
-
-def _answer(result: Result) -> dict[str, Any]:
-    row = {name: value for name, value in summary_row(result).items() if name not in _NOT_THE_ANSWER}
-    return row | {"liquid_in_range": _liquid_in_range(result)}
-
-
-def _liquid_in_range(result: Result) -> bool:
-    """Whether the model of the liquid holds for this run: what else may end a model leaves the distance alone."""
-    about_liquid = (check for check in result.checks if check.kind == "model" and check.name not in _NOT_THE_LIQUID)
-    return all(check.within for check in about_liquid)

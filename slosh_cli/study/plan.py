@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from dataclasses import replace as copy_of
 from itertools import product
 from typing import Any, Final
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario import OutlivedCoefficientsError, Scenario, parse_quantity, replace
-from slosh_cli.scenario.given_modes import shapes_modes
+from slosh_cli.scenario import OutlivedCoefficientsError, Scenario, parse_quantity
+from slosh_cli.scenario.schema_modes import shapes_modes
 from slosh_cli.scenario.units import plain
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.key import stop_key
@@ -20,7 +20,7 @@ SPEED: Final = "braking.initial_speed"
 TORQUE: Final = "braking.torque"
 LIQUID: Final = "tank.liquid.model"
 SOLID: Final = "rigid"
-COEFFICIENTS: Final = "tank.coefficients"
+_COEFFICIENTS: Final = "tank.coefficients"
 
 _TRIES: Final = 200
 """Combinations in which a value may prove itself before it is refused."""
@@ -76,11 +76,11 @@ class Study:
         """
         values: dict[str, Any] = dict(self.values(index))
         if self.histories:
-            values["description"] = describe(self.values(index))
+            values["description"] = _describe(self.values(index))
         else:
             values["output.interval"] = _LONGEST_INTERVAL
         try:
-            scenario = replace(self.base, values)
+            scenario = self.base.with_(values)
         except ScenarioError as error:
             axes = {axis.key: axis for axis in self.axes}
             raise type(error)(self.file, [_placed(problem, axes) for problem in error.problems]) from None
@@ -111,7 +111,7 @@ class Study:
     def _check_coefficients(self) -> None:
         """Raise ScenarioError where slosh coefficients would be used for another tank than the one they belong to."""
         shaping = [number for number, axis in enumerate(self.axes) if shapes_modes(axis.key)]
-        choosing = [number for number, axis in enumerate(self.axes) if axis.key in (LIQUID, COEFFICIENTS)]
+        choosing = [number for number, axis in enumerate(self.axes) if axis.key in (LIQUID, _COEFFICIENTS)]
         for number in shaping:
             self._check_common_coefficients(self.axes[number])
             for places in product(*(range(len(self.axes[n].values)) for n in (number, *choosing))):
@@ -126,7 +126,7 @@ class Study:
     def _check_common_coefficients(self, shape: Axis) -> None:
         """Raise ScenarioError where one list of an axis of coefficients would serve several tanks of another axis."""
         for axis in self.axes:
-            lists = [value for value in axis.values if axis.key == COEFFICIENTS and value != "computed"]
+            lists = [value for value in axis.values if axis.key == _COEFFICIENTS and value != "computed"]
             if lists and len(shape.values) > 1:
                 rule = f"must be `computed` where `{shape.key}` varies, because given coefficients belong to one tank"
                 problem = Problem(None, axis.key, rule, plain(lists[0]), "write `computed`", override=axis.key)
@@ -169,7 +169,7 @@ def _placed(problem: Problem, axes: Mapping[str, Axis]) -> Problem:
     return copy_of(problem, line=axis.line, override="" if axis.line else axis.source)
 
 
-def describe(values: Mapping[str, str]) -> str:
+def _describe(values: Mapping[str, str]) -> str:
     """``braking.torque 5 kN m, tank.fill 0.5``."""
     return ", ".join(f"{key} {value}" for key, value in values.items())
 
@@ -177,10 +177,3 @@ def describe(values: Mapping[str, str]) -> str:
 def tidy(value: float) -> float:
     """Drop the rounding that a change of units leaves behind (80.00000000000001 km/h)."""
     return float(f"{value:.12g}")
-
-
-def with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
-    """`axes`, then `others`; one of these that shares its key with one of those takes its place."""
-    found = {axis.key: axis for axis in axes}
-    found |= {axis.key: axis for axis in others}
-    return tuple(found.values())

@@ -13,7 +13,7 @@ from slosh_cli.errors import ScenarioError
 from slosh_cli.results.files import FileError
 from slosh_cli.study.journal import Journal
 from slosh_cli.study.key import history_key
-from slosh_cli.study.outcome import Outcome, without_result
+from slosh_cli.study.outcome import FinishedStop, without_result
 from slosh_cli.study.plan import Stop, Study
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 HISTORIES: Final = "histories"
 """Folder of the history files inside the study's."""
 
-Report = Callable[[int, int], None]
+_Report = Callable[[int, int], None]
 """Called with the number of stops finished in this run and of those it has to do."""
 
 
@@ -39,7 +39,7 @@ class Workers(Protocol):
         """How many stops are computed at a time."""
         ...
 
-    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[FinishedStop], None, None]:
         """Outcomes of the `total` stops as they come, in any order, until all are done or `cancel` is set."""
         ...
 
@@ -61,7 +61,7 @@ class Plan:
     unwritten: list[str] = field(default_factory=list)
 
 
-def history_file(scenario: Scenario) -> str:
+def _history_file(scenario: Scenario) -> str:
     """Path of a stop's history file within the study's folder: another for every change that the history shows."""
     return f"{HISTORIES}/{history_key(scenario)[:20]}.h5"
 
@@ -81,7 +81,7 @@ def plan(study: Study, journal: Journal | None, folder: Path) -> Plan:
             found.unsound[index] = error.problems[0].text(study.file)
             continue
         found.keys.append(stop.key)
-        history = history_file(stop.scenario) if study.histories else ""
+        history = _history_file(stop.scenario) if study.histories else ""
         if history:
             found.histories[index] = history
         if journal is not None and _is_done(journal, stop.key, folder / history if history else None):
@@ -109,7 +109,7 @@ def answer(study: Study, plan: Plan, journal: Journal, index: int) -> dict[str, 
     return row
 
 
-def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, cancel: Event, report: Report) -> int:
+def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, cancel: Event, report: _Report) -> int:
     """Compute the open stops of a study, committed to the journal as they come; returns how many came.
 
     Ends early, without losing what has come, when `cancel` is set. A history that cannot be written costs nothing but
@@ -131,11 +131,11 @@ def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, c
     return done
 
 
-def _write_history(outcome: Outcome, plan: Plan) -> None:
+def _write_history(outcome: FinishedStop, plan: Plan) -> None:
     if outcome.result is not None:
         from slosh_cli.results.hdf5 import write_history
 
         try:
-            write_history(outcome.result, plan.folder / history_file(outcome.result.scenario))
+            write_history(outcome.result, plan.folder / _history_file(outcome.result.scenario))
         except FileError as error:
             plan.unwritten.append(str(error))

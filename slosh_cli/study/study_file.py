@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,11 +20,11 @@ from typing import Any, Final
 from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
 from slosh_cli.scenario import find_packaged, load_document
 from slosh_cli.scenario.document import Document
-from slosh_cli.scenario.leaves import NAME, file_safe
 from slosh_cli.scenario.source import text_of
 from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.words import NAME, file_safe
 from slosh_cli.scenario.yaml_text import parse
-from slosh_cli.study.axis import Axis, listed, values_of
+from slosh_cli.study.axis import Axis, axis_values
 from slosh_cli.study.plan import LIQUID
 
 KEYS: Final = ("name", "description", "base", "vary", "liquid")
@@ -121,16 +121,7 @@ class _Reader:
 
     def _axis(self, place: tuple[str, ...], key: str, spec: Any) -> Axis | None:
         try:
-            return Axis(key, _values(spec), str(self._path), self._document.origin(place).line)
+            return Axis(key, axis_values(spec), str(self._path), self._document.origin(place).line)
         except ValueRefused as refused:
             self.problem(place, refused.rule, refused.given, refused.fix)
             return None
-
-
-def _values(spec: Any) -> tuple[str, ...]:
-    if isinstance(spec, str):
-        return values_of(spec)
-    if not isinstance(spec, Sequence) or not spec:
-        return listed([] if spec == [] else [spec])
-    texts = (values_of(entry) if isinstance(entry, str) else listed([entry]) for entry in spec)
-    return tuple(dict.fromkeys(text for group in texts for text in group))

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from slosh_cli.scenario import Scenario
-from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import NAME, Choice
-from slosh_cli.scenario.schema import DIALECT, OWN
-from slosh_cli.scenario.tree import leaf_of, spot_of
+from slosh_cli.scenario.base import _DIALECT as DIALECT
+from slosh_cli.scenario.base import OWN, Part
+from slosh_cli.scenario.tree import spot_of
+from slosh_cli.scenario.words import NAME, Choice
 from slosh_cli.study.plan import LIQUID
 from slosh_cli.study.study_file import KEYS
 
@@ -80,7 +80,7 @@ def _spec(field: Any) -> dict[str, Any]:
 
 def _models(field: Any) -> dict[str, Any]:
     """Models of the liquid: a list, or a text with commas."""
-    leaf = leaf_of(field)
+    leaf = next((e for e in field.metadata if isinstance(e, Choice)), None)
     words = leaf.options if isinstance(leaf, Choice) else ()
     listed = "|".join(map(re.escape, words))
     return {

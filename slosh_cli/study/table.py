@@ -7,23 +7,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
 from typing import Any, Final
 
-from slosh_cli.results.channels import WHEELS
+from slosh_cli.results.answers import Place, Shown
+from slosh_cli.results.result import Record
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
 TABLE: Final = "braking_distance.csv"
 
-Row = dict[str, Any]
+_Row = dict[str, Any]
 
-_HEAD: Final = ("v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status")
-_PER_WHEEL: Final = ("min_wheel_load_{}_N", "max_wheel_load_{}_N", "static_wheel_load_{}_N", "locked_time_{}_s")
-_TAIL: Final = (
-    "ratio_to_solid", "liquid_in_range", "max_surface_m", "surface_limit_m",
-    *(column.format(i) for column in _PER_WHEEL for i in WHEELS),
-    "max_wheel_unloading", "mean_total_wheel_load_N", "weight_N", "energy_residual", "steps", "rejected_steps",
-    "in_model_range",
-)  # fmt: skip
-_END: Final = ("not_within", "reason", "warnings")
+_RATIO: Final = "ratio_to_solid"
+_PLACES: Final = ((Place.NAME, Place.STATUS), (Place.RANGE, Place.RUN), (Place.WORDS, Place.WORDS))
+"""The head of the table, what the stops came to, and the words at its end."""
 _OF_THE_HEAD: Final = (SPEED, TORQUE, LIQUID)
 
 
@@ -32,21 +27,24 @@ def column_of(axis: Axis) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "_", f"{axis.key}_{axis.unit}").strip("_")
 
 
-def columns(study: Study, rows: Iterable[Row] = ()) -> list[str]:
+def columns(study: Study, rows: Iterable[_Row] = ()) -> list[str]:
     """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
-    varied = [column_of(axis) for axis in own_axes(study)]
-    known = [*_HEAD, *varied, *_TAIL]
+    varied = [column_of(axis) for axis in _own_axes(study)]
+    head, answers, words = (
+        [column for one in Record.in_table(Shown.STUDY, *places) for column in one.columns] for places in _PLACES
+    )
+    known = [*head, *varied, _RATIO, *answers]
     others = dict.fromkeys(name for row in rows for name in row)
-    end = [*_END, *(["history"] if study.histories else [])]
+    end = [*words, *(["history"] if study.histories else [])]
     return [*known, *(name for name in others if name not in known and name not in end), *end]
 
 
-def own_axes(study: Study) -> list[Axis]:
+def _own_axes(study: Study) -> list[Axis]:
     """The axes that have a column of their own: all but speed, torque and liquid."""
     return [axis for axis in study.axes if axis.key not in _OF_THE_HEAD]
 
 
-def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Iterator[Row]:
+def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Iterator[_Row]:
     """Rows in the order of the grid, one group of liquids in memory at a time.
 
     `answer` gives the row of a stop by its index, None for one that has not been computed: it is left out.
@@ -56,7 +54,7 @@ def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Ite
         known = [_row(study, index, given) for index, given in found if given is not None]
         solid = next((row for row in known if row["liquid"] == SOLID), None)
         for row in known:
-            row["ratio_to_solid"] = _ratio(row, solid)
+            row[_RATIO] = _ratio(row, solid)
             yield row
 
 
@@ -66,12 +64,12 @@ def _point(study: Study, index: int) -> tuple[int, ...]:
     return tuple(place for axis, place in pairs if axis.key != LIQUID)
 
 
-def _row(study: Study, index: int, given: Mapping[str, Any]) -> Row:
+def _row(study: Study, index: int, given: Mapping[str, Any]) -> _Row:
     places = dict(zip((axis.key for axis in study.axes), study.positions(index), strict=True))
-    return dict(given) | {column_of(axis): axis.plain(places[axis.key]) for axis in own_axes(study)}
+    return dict(given) | {column_of(axis): axis.plain(places[axis.key]) for axis in _own_axes(study)}
 
 
-def _ratio(row: Row, solid: Row | None) -> float | None:
+def _ratio(row: _Row, solid: _Row | None) -> float | None:
     """Braking distance over that of the equivalent solid; None for the solid itself and without both answers."""
     if solid is None or row is solid:
         return None

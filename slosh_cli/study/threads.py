@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from threading import Event
 from typing import TYPE_CHECKING
 
-from slosh_cli.study.outcome import Outcome, solve
+from slosh_cli.study.outcome import FinishedStop, solve
 from slosh_cli.study.plan import Stop
 
 if TYPE_CHECKING:
@@ -42,10 +42,10 @@ class Threads:
         """What computes, for people."""
         return f"{self.threads} thread{'s' if self.threads > 1 else ''}"
 
-    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[Outcome], None, None]:
+    def outcomes(self, stops: Iterable[Stop], total: int, cancel: Event) -> Generator[list[FinishedStop], None, None]:
         """Outcomes as they come, in no particular order. `cancel` gives up the stops in hand and ends the iteration."""
         del total  # only workers far away need to know
-        waiting: set[Future[Outcome]] = set()
+        waiting: set[Future[FinishedStop]] = set()
         with _quick_turns(), ThreadPoolExecutor(self.threads, thread_name_prefix="stop") as pool:
             try:
                 for stop in stops:
@@ -66,7 +66,7 @@ class Threads:
                 raise
 
 
-def _gathered(waiting: set[Future[Outcome]]) -> tuple[set[Future[Outcome]], set[Future[Outcome]]]:
+def _gathered(waiting: set[Future[FinishedStop]]) -> tuple[set[Future[FinishedStop]], set[Future[FinishedStop]]]:
     """Those that have finished after a moment, at least one, and those that have not."""
     done, open_ = wait(waiting, timeout=_GATHER)
     return (done, open_) if done else wait(waiting, return_when=FIRST_COMPLETED)
@@ -83,7 +83,7 @@ def _quick_turns() -> Iterator[None]:
         sys.setswitchinterval(earlier)
 
 
-def _solve(stop: Stop, cancel: Event) -> Outcome:
+def _solve(stop: Stop, cancel: Event) -> FinishedStop:
     """A stop that was waiting its turn when the study was given up is not begun."""
     from slosh_cli.solver.run import Cancelled
 
@@ -92,7 +92,7 @@ def _solve(stop: Stop, cancel: Event) -> Outcome:
     return solve(stop, cancel)
 
 
-def _finished(futures: Iterable[Future[Outcome]], cancel: Event) -> list[Outcome]:
+def _finished(futures: Iterable[Future[FinishedStop]], cancel: Event) -> list[FinishedStop]:
     """What the futures brought, without the stops that were given up."""
     from slosh_cli.solver.run import Cancelled
 

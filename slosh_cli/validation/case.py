@@ -6,11 +6,12 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from slosh_cli.validation.chart import Chart
-from slosh_cli.validation.data_file import CaseData, Kind
+from slosh_cli.validation.data_file import CaseData, Deviation
 
-Value = float | str | None
+_Value = float | str | None
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,8 @@ class Row:
     """
 
     quantity: str
-    value: Value
-    reference: Value
+    value: _Value
+    reference: _Value
     deviation: float | None
     tolerance: float | None
     source: str
@@ -44,7 +45,7 @@ class Outcome:
     chart: Chart
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CaseResult:
     """A case that was run; `chart` is None where it broke down."""
 
@@ -52,6 +53,9 @@ class CaseResult:
     rows: tuple[Row, ...]
     chart: Chart | None
     seconds: float
+
+    def __repr__(self) -> str:
+        return f"CaseResult({self.name}: {'passed' if self.passed else 'fell short'}, {len(self.rows)} rows)"
 
     @property
     def name(self) -> str:
@@ -62,6 +66,12 @@ class CaseResult:
     def passed(self) -> bool:
         """Whether every row keeps within its tolerance, and there is one that could fail."""
         return all(row.passed for row in self.rows) and any(row.tolerance is not None for row in self.rows)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The result as the JSON object of `slosh validate` has it."""
+        keys = ("quantity", "value", "reference", "deviation", "tolerance", "source")
+        rows = [{key: getattr(row, key) for key in keys} for row in self.rows]
+        return {"name": self.name, "passed": self.passed, "seconds": self.seconds, "rows": rows}
 
 
 @dataclass
@@ -77,7 +87,7 @@ class Findings:
         deviation: float | None = None
         if value is not None and math.isfinite(value):
             deviation = abs(value - reference)
-            if allowed.kind is Kind.RELATIVE:
+            if allowed.kind is Deviation.RELATIVE:
                 deviation /= abs(reference)
         elif value is not None:
             value = None
@@ -93,7 +103,7 @@ class Findings:
         """A verdict in words beside the one that the data file states."""
         self._add(quantity, found, stated, float(found != stated), 0.0, source, "verdict")
 
-    def note(self, quantity: str, value: Value, reference: Value = None, source: str = "") -> None:
+    def note(self, quantity: str, value: _Value, reference: _Value = None, source: str = "") -> None:
         """Something worth knowing that decides nothing."""
         deviation = None
         if isinstance(value, float) and isinstance(reference, float) and reference:
@@ -103,8 +113,8 @@ class Findings:
     def _add(
         self,
         quantity: str,
-        value: Value,
-        reference: Value,
+        value: _Value,
+        reference: _Value,
         deviation: float | None,
         tolerance: float | None,
         source: str,

@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import Any
 
 
-class Kind(StrEnum):
+class Deviation(StrEnum):
     """What the deviation of a row is."""
 
     RELATIVE = "relative"
@@ -23,7 +23,7 @@ class Tolerance:
     """How near is near enough, and the reason; `kind` says what the deviation is."""
 
     value: float
-    kind: Kind
+    kind: Deviation
     reason: str
 
 
@@ -61,7 +61,7 @@ def read_case(name: str) -> CaseData:
     text = files("slosh_cli.validation").joinpath("data", f"{name}.toml").read_text(encoding="utf-8")
     content = tomllib.loads(text)
     tolerances = {
-        key: Tolerance(float(entry["value"]), Kind(entry["kind"]), " ".join(entry["reason"].split()))
+        key: Tolerance(float(entry["value"]), Deviation(entry["kind"]), " ".join(entry["reason"].split()))
         for key, entry in content["tolerance"].items()
     }
     return CaseData(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from slosh_cli.validation.case import CaseResult, Row, Value
+from slosh_cli.validation.case import CaseResult, Row
 from slosh_cli.validation.data_file import CaseData
 
 PASSED, FELL_SHORT = "passed", "fell short"
 
 
-def number(value: Value, digits: int = 7) -> str:
+def number(value: float | str | None, digits: int = 7) -> str:
     """A value as a person reads it."""
     if value is None:
         return ""
@@ -41,7 +41,7 @@ def report(results: Sequence[CaseResult], left_out: Sequence[CaseData], heading:
     for result in results:
         lines += ["", f"## {result.name}", "", *description(result.data), "", *row_table(result.rows)]
         if result.chart is not None:
-            lines += ["", f"![{_cell(result.data.title)}]({result.name}.png)"]
+            lines += ["", f"![{cell(result.data.title)}]({result.name}.png)"]
     return "\n".join(lines) + "\n"
 
 
@@ -60,33 +60,16 @@ def description(data: CaseData) -> list[str]:
     return lines
 
 
-def tolerance_table(data: CaseData) -> list[str]:
-    """The tolerances of a case and their reasons."""
-    lines = ["| tolerance | value | kind | reason |", "|---|---|---|---|"]
-    for key, entry in data.tolerances.items():
-        lines.append(f"| {key.replace('_', ' ')} | {entry.value:g} | {entry.kind} | {_cell(entry.reason)} |")
-    return lines
-
-
 def row_table(rows: Iterable[Row]) -> list[str]:
     """All rows of a case."""
     lines = ["| quantity | ours | reference | deviation | tolerance | verdict |", "|---|---|---|---|---|---|"]
     for row in rows:
         cells = [row.quantity, number(row.value), number(row.reference), number(row.deviation, 2)]
         cells += [number(row.tolerance, 2), verdict_of(row)]
-        lines.append("| " + " | ".join(_cell(text) for text in cells) + " |")
+        lines.append("| " + " | ".join(cell(text) for text in cells) + " |")
     return lines
 
 
-def manual_chapter(result: CaseResult) -> str:
-    """A case as a chapter of the manual: description, tolerances, results, the errors that it catches."""
-    lines = [f"## {result.name}", "", *description(result.data), "", *tolerance_table(result.data)]
-    lines += ["", *row_table(result.rows)]
-    if result.data.catches:
-        lines += ["", "Deliberate errors that turn this case red (each is a test):", ""]
-        lines += [f"- {catch.error}" for catch in result.data.catches]
-    return "\n".join(lines) + "\n"
-
-
-def _cell(text: str) -> str:
+def cell(text: str) -> str:
+    """A text as the cell of a table."""
     return text.replace("|", "\\|")

@@ -71,6 +71,6 @@ def compute_of(name: str) -> Compute:
     return cast(Compute, module.compute)
 
 
-def run(data: CaseData) -> CaseResult:
+def case_result(data: CaseData) -> CaseResult:
     """Run one case."""
     return run_case(data, compute_of(data.name))

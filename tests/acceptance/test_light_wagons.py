@@ -10,7 +10,6 @@ import pytest
 from slosh_cli.method import START
 from slosh_cli.results.simulate import simulate
 from slosh_cli.scenario import Scenario
-from slosh_cli.scenario import replace as replaced
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
 from tests.reference_code.plain_shallow import PlainTank, circle
@@ -107,7 +106,7 @@ def test_a_small_push_meets_the_resistance_of_the_waves_it_sends_out(shipped):
     tank = {"shape": "rectangular", "length": length, "width": width, "height": 2.0, "fill": depth / 2.0}
     liquid = {"model": "shallow-water", "density": density, "cells": 120}
     own = {"bottom_height": paper.tank.bottom_height, "coefficients": "computed", "liquid": liquid}
-    result = simulate(replaced(paper, {"tank": tank | own}))
+    result = simulate(paper.with_({"tank": tank | own}))
     wave = np.sqrt(9.81 * depth)
     resistance = 2 * density * width * depth * wave
     mass = 820.0 + 4 * paper.wagon.wheelset.spin_inertia / 0.46**2

@@ -14,8 +14,8 @@ from scipy.interpolate import CubicSpline
 
 from slosh_cli.compiled import kernel
 from slosh_cli.method import START
+from slosh_cli.results.answers import Shown
 from slosh_cli.results.hdf5 import write_history
-from slosh_cli.results.tables import summary_row
 from slosh_cli.results.validity import UNLOADING_LIMIT
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
@@ -240,7 +240,7 @@ def test_every_run_has_verdicts_in_json_hdf5_and_tables(stop, liquid, tmp_path):
     assert told["in_model_range"] == result.in_model_range
     assert [entry["check"] for entry in told["checks"]] == list(verdicts)
     assert all({"value", "limit", "within", "kind"} <= set(entry) for entry in told["checks"])
-    assert summary_row(result)["in_model_range"] == result.in_model_range
+    assert result.row(Shown.SUMMARY)["in_model_range"] == result.in_model_range
     write_history(result, tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:
         assert bool(file.attrs["in_model_range"]) == result.in_model_range

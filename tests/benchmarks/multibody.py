@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from slosh_cli.scenario import Scenario, replace
+from slosh_cli.scenario import Scenario
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.validation.exact.exudyn_wagon import exudyn_stop
 
@@ -31,7 +31,7 @@ def braking_distance(case: Scenario, step: float) -> tuple[float, int]:
     where the brake sets in, so nothing of second order is lost.
     """
     onset = case.braking.onset + 0.5 * step
-    late = replace(case, {"braking.onset": f"{onset!r} s"})
+    late = case.with_({"braking.onset": f"{onset!r} s"})
     (mode,) = slosh_modes(case.tank)
     found = exudyn_stop(late, mode, round(LONG_ENOUGH / step) * step, step)
     end = int(np.argmax(found.speed <= case.braking.stop_speed))

@@ -11,7 +11,7 @@ import typer
 from stand_ins import Slosh
 
 from slosh_cli import __version__
-from slosh_cli.cli.app import build
+from slosh_cli.cli.app import tree
 from slosh_cli.cli.exit_codes import ExitCode
 
 HEAVY = ["numba", "scipy", "pandas", "matplotlib", "pint", "h5py", "numpy", "yaml", "rich"]
@@ -23,10 +23,10 @@ def _tree(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
         yield from _tree(child, (*path, name))
 
 
-COMMANDS = dict(_tree(typer.main.get_command(build())))
+COMMANDS = dict(_tree(typer.main.get_command(tree())))
 
 
-def test_the_commands_are_those_of_the_contract() -> None:
+def test_the_commands_are_those_that_scripts_rely_on() -> None:
     assert {path[0] for path in COMMANDS if path} >= {"run", "check", "schema", "init", "plot"}
 
 
@@ -107,7 +107,7 @@ def test_help_is_as_quick_as_the_library_it_needs() -> None:
 def test_one_command_alone_is_the_same_as_in_the_whole_tree() -> None:
     """The command line sets up only the command it is given."""
     for name in {path[0] for path in COMMANDS if path}:
-        alone = dict(_tree(typer.main.get_command(build(name))))
+        alone = dict(_tree(typer.main.get_command(tree(name))))
         whole = {path for path in COMMANDS if path[:1] in ((), (name,))}
         assert set(alone) == whole
         for path in whole - {()}:

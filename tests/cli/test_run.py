@@ -170,7 +170,7 @@ def full_disk(*_: object, **__: object) -> None:
     ("writer", "lost"),
     [
         ("results.hdf5.write_history", {"run.h5"}),
-        ("results.tables.write_summary", {"summary.csv"}),
+        ("results.tables.write_table", {"summary.csv"}),
         ("report.figures.wheel_speed", {"wheel_speed.png", "wheel_speed.svg"}),
         ("report.figures.draw_run", DRAWN),
     ],

@@ -18,12 +18,11 @@ from study_tools import QuickSolver
 
 import slosh_cli.results.simulate
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.sweep_progress import StopsProgress, duration
+from slosh_cli.cli.progress import StopsProgress, duration
 from slosh_cli.report.study_figures import draw_study
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.validity import Check, warnings_of
 from slosh_cli.scenario import Scenario, load_scenario
-from slosh_cli.scenario import replace as with_values
 
 KEYS = ["name", "runs", "done", "failed", "reused", "table", "figures", "wall_seconds"]
 FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite"}
@@ -31,7 +30,7 @@ FILES = {"braking_distance.csv", "braking_distance.png", "braking_distance.svg",
 
 @pytest.fixture(scope="module")
 def template() -> Result:
-    return plausible_run(with_values(load_scenario(PAPER), {"braking.initial_speed": "5 km/h"}))
+    return plausible_run(load_scenario(PAPER).with_({"braking.initial_speed": "5 km/h"}))
 
 
 @pytest.fixture

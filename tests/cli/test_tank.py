@@ -239,10 +239,8 @@ def test_fillings_that_are_none(slosh: Slosh, fills: str) -> None:
 
 
 def test_every_axis_of_the_figures_has_a_unit(slosh: Slosh, monkeypatch: pytest.MonkeyPatch) -> None:
-    from slosh_cli.report import tank_figures
-
     drawn = []
-    monkeypatch.setattr(tank_figures, "save", lambda figure, *_: drawn.append(figure) or [])
+    monkeypatch.setattr("slosh_cli.report.saving.save", lambda figure, *_: drawn.append(figure) or [])
     slosh("tank", "coefficients", HALF, "-o", "here")
     slosh("tank", "excite", HALF, "--deceleration", "1 m/s^2", "--duration", "2 s", "-o", "here")
     slosh("tank", "chart", HALF, "--fills", "0.3,0.5", "-o", "here")
@@ -269,7 +267,7 @@ def test_an_excitation_never_replaces_another_one(slosh: Slosh, tmp_path: Path) 
     [
         ("results.hdf5.write_excitation", {"excite.h5"}),
         ("results.tables.write_table", {"excite.csv"}),
-        ("report.tank_figures.draw_excitation", {"excite.png", "excite.svg"}),
+        ("report.tank_figures.excitation_figure", {"excite.png", "excite.svg"}),
     ],
 )
 def test_a_file_of_an_excitation_that_fails_costs_itself_alone(

@@ -45,7 +45,7 @@ def fell_short(data):
 
 
 def test_exit_code_1_when_a_case_falls_short(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(registry, "run", fell_short)
+    monkeypatch.setattr(registry, "case_result", fell_short)
     assert main(["validate", "polach", "-o", str(tmp_path)]) == 1
     out = capsys.readouterr().out
     assert "answer [to everything]" in out.replace("\n", " ")
@@ -76,7 +76,7 @@ def test_list(capsys):
 
 def test_a_part_of_the_cases_does_not_replace_the_report_of_all(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "run", fell_short)
+    monkeypatch.setattr(registry, "case_result", fell_short)
     folder = tmp_path / "outputs" / "validation"
     assert main(["validate"]) == 1
     report = (folder / "report.md").read_bytes()
@@ -104,7 +104,7 @@ def test_the_verdict_is_told_when_the_report_cannot_be_written(tmp_path, capsys,
 
 
 def test_a_report_that_cannot_be_written_is_refused_before_the_cases_run(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(registry, "run", lambda data: pytest.fail("ran"))
+    monkeypatch.setattr(registry, "case_result", lambda data: pytest.fail("ran"))
     (tmp_path / "report.md").mkdir()
     assert main(["validate", "polach", "-o", str(tmp_path)]) == 2
     assert "there is a folder of that name" in capsys.readouterr().err

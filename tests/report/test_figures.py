@@ -12,8 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
 from slosh_cli.report import figures
-from slosh_cli.report.figures import FIGURES, WHEEL_STYLES, draw_run
-from slosh_cli.report.record import caption, conditions, locked_stretches
+from slosh_cli.report.figures import FIGURES, draw_run
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Result, Status
@@ -68,11 +67,13 @@ def test_axes_carry_quantity_and_unit(liquid: Result, name: str) -> None:
 
 
 def test_wheels_differ_in_line_style_and_in_lightness() -> None:
-    lightness = [float(np.dot(to_rgb(style["color"]), (0.299, 0.587, 0.114))) for style in WHEEL_STYLES.values()]
+    lightness = [
+        float(np.dot(to_rgb(style["color"]), (0.299, 0.587, 0.114))) for style in figures._WHEEL_STYLES.values()
+    ]
     assert np.diff(sorted(lightness)).min() > 0.07
     assert abs(lightness[0] - lightness[1]) > 0.3  # the pair in one bogie runs side by side
     assert abs(lightness[2] - lightness[3]) > 0.3
-    assert len({str(style["linestyle"]) for style in WHEEL_STYLES.values()}) == 4
+    assert len({str(style["linestyle"]) for style in figures._WHEEL_STYLES.values()}) == 4
 
 
 def test_contact_forces_shows_four_normal_forces_in_kilonewtons(liquid: Result) -> None:
@@ -92,8 +93,8 @@ def test_speed_is_shown_in_kilometres_per_hour(liquid: Result) -> None:
 
 
 def test_locked_stretches_are_those_in_which_the_wheel_stands(liquid: Result) -> None:
-    assert locked_stretches(liquid, 1) == []
-    ((start, duration),) = locked_stretches(liquid, 4)
+    assert liquid.locked_stretches(1) == []
+    ((start, duration),) = liquid.locked_stretches(4)
     assert start == pytest.approx(liquid.time[-1] - 1.25, abs=0.02)
     assert duration == pytest.approx(1.2, abs=0.03)
 
@@ -101,7 +102,7 @@ def test_locked_stretches_are_those_in_which_the_wheel_stands(liquid: Result) ->
 def test_a_wheel_locked_to_the_end_is_shown_to_the_end(liquid: Result) -> None:
     speed = np.where(liquid.time > 5.0, 0.0, liquid.channels["wheel_1_speed"])
     run = replace(liquid, channels={**liquid.channels, "wheel_1_speed": speed})
-    ((start, duration),) = locked_stretches(run, 1)
+    ((start, duration),) = run.locked_stretches(1)
     assert start + duration == pytest.approx(liquid.time[-1])
 
 
@@ -112,7 +113,7 @@ def test_the_figure_shades_the_locked_wheel_only(liquid: Result) -> None:
 
 def test_wheels_of_a_standing_train_are_not_locked(liquid: Result) -> None:
     standing = {name: np.where(liquid.time > 8.0, 0.0, liquid.channels[name]) for name in ("speed", "wheel_2_speed")}
-    assert locked_stretches(replace(liquid, channels=liquid.channels | standing), 2) == []
+    assert replace(liquid, channels=liquid.channels | standing).locked_stretches(2) == []
 
 
 def test_the_figure_says_when_no_wheel_locks(liquid: Result, solid: Result) -> None:
@@ -140,12 +141,12 @@ def test_every_mode_is_drawn(liquid: Result) -> None:
 
 def test_a_run_that_did_not_stop_says_so(liquid: Result) -> None:
     run = replace(liquid, status=Status.PITCH_LIMIT, reason="car pitch 0.1 rad at 3 s", warnings=())
-    assert caption(run) == "The run ended as pitch-limit: car pitch 0.1 rad at 3 s"
+    assert figures._caption(run) == "The run ended as pitch-limit: car pitch 0.1 rad at 3 s"
 
 
 def test_a_long_name_is_cut(liquid: Result) -> None:
     scenario = liquid.scenario.model_copy(update={"name": "wagon " * 40})
-    assert len(conditions(replace(liquid, scenario=scenario))) < 110
+    assert len(figures._conditions(replace(liquid, scenario=scenario))) < 110
 
 
 def test_text_that_looks_like_mathematics_stays_text(liquid: Result, tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from slosh_cli.results.liquid_range import Motion, motion_checks
 from slosh_cli.results.simulate import simulate
-from slosh_cli.scenario import HorizontalCylinder, Liquid, load_scenario, replace
+from slosh_cli.scenario import HorizontalCylinder, Liquid, load_scenario
 
 SLOT = "liquid in the slot over the room above the liquid"
 
@@ -35,9 +35,9 @@ def test_columns_hold_nothing_in_the_slot():
 
 def test_a_nearly_full_stop_is_outside_its_model_a_half_full_one_that_strikes_the_roof_is_not():
     stop = {"tank.coefficients": "computed", "tank.liquid.model": "shallow-water"}
-    paper = replace(load_scenario("paper-80-liquid"), stop)
-    half = simulate(replace(paper, {"braking.torque": "10 kN m"}))
-    full = simulate(replace(paper, {"tank.fill": 0.95}))
+    paper = load_scenario("paper-80-liquid").with_(stop)
+    half = simulate(paper.with_({"braking.torque": "10 kN m"}))
+    full = simulate(paper.with_({"tank.fill": 0.95}))
     assert half.in_model_range
     assert not any("slot above the roof may hold" in text for text in half.warnings)
     assert not full.in_model_range

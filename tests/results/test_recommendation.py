@@ -17,7 +17,7 @@ from slosh_cli.results.recommendation import (
     stop_deceleration,
 )
 from slosh_cli.results.validity import warnings_of
-from slosh_cli.scenario import HorizontalCylinder, Liquid, Rectangular, Scenario, replace
+from slosh_cli.scenario import HorizontalCylinder, Liquid, Rectangular, Scenario
 from slosh_cli.scenario.schema_tank import Baffle
 
 DEPTH, ROOF, LENGTH = 1.1875, 3.0, 15.5
@@ -103,7 +103,7 @@ def test_deceleration_of_a_stop(scenario: Scenario):
     mass = 21300 + 2 * 1800 + 4 * 1400 + 830 * np.pi * 1.5**2 / 2 * 15.5
     by_torque = (8 * 5000 / 0.46 + drag) / (mass + 4 * 120 / 0.46**2)
     assert stop_deceleration(scenario) == pytest.approx(by_torque, rel=1e-9)
-    hard = replace(scenario, {"braking.torque": 1e5})
+    hard = scenario.with_({"braking.torque": 1e5})
     assert stop_deceleration(hard) == pytest.approx(0.55 * 9.81 + drag / mass, rel=1e-9)
 
 
@@ -123,5 +123,5 @@ def test_a_run_of_either_model_recommends_the_same(stop):
 def test_no_packaged_scenario_is_sent_to_and_fro(shipped):
     for name in ("paper_80", "paper_160"):
         one = shipped(name)
-        other = replace(one, {"tank.liquid.model": "shallow-water"})
+        other = one.with_({"tank.liquid.model": "shallow-water"})
         assert recommend(one.tank, 1.0) == recommend(other.tank, 1.0)

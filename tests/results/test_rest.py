@@ -8,9 +8,9 @@ import pytest
 from slosh_cli.wagon.coordinates import CAR_PITCH
 
 from slosh_cli.results import rest
+from slosh_cli.results.answers import Shown
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.results.simulate import simulate
-from slosh_cli.results.tables import summary_row
 from slosh_cli.solver.excite import Deceleration, excite
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
@@ -35,8 +35,8 @@ def test_a_heavy_liquid_pushes_on_after_a_short_stop(stop, tmp_path):
     assert "87.8 kN" in told
     assert "move on" in told
     assert result.status == "stopped"  # the distance stays that of the first passage
-    assert NAME in summary_row(result)["not_within"]
-    assert "at rest" in summary_row(result)["warnings"]
+    assert NAME in result.row(Shown.SUMMARY)["not_within"]
+    assert "at rest" in result.row(Shown.SUMMARY)["warnings"]
     write_history(result, tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:
         kept = {check["check"]: check for check in json.loads(file.attrs["checks"])}

@@ -7,19 +7,20 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from slosh_cli.results.answers import Shown
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Result
-from slosh_cli.results.tables import summary_row, write_rows, write_summary, write_table
+from slosh_cli.results.tables import write_rows, write_table
 
 
 def test_the_first_columns_are_those_of_the_contract(result: Result) -> None:
-    assert list(summary_row(result))[:7] == [
+    assert list(result.row(Shown.SUMMARY))[:7] == [
         "name", "v0_km_h", "torque_kN_m", "liquid", "braking_distance_m", "braking_time_s", "status",
     ]  # fmt: skip
 
 
 def test_pandas_reads_back_what_was_written(result: Result, tmp_path: Path) -> None:
-    write_summary(result, tmp_path / "summary.csv")
+    write_table([result.row(Shown.SUMMARY)], tmp_path / "summary.csv")
     table = pd.read_csv(tmp_path / "summary.csv")
     assert len(table) == 1
     row = table.iloc[0]
@@ -35,7 +36,7 @@ def test_pandas_reads_back_what_was_written(result: Result, tmp_path: Path) -> N
 
 
 def test_no_answer_is_an_empty_field(unfinished: Result, tmp_path: Path) -> None:
-    write_summary(unfinished, tmp_path / "summary.csv")
+    write_table([unfinished.row(Shown.SUMMARY)], tmp_path / "summary.csv")
     row = pd.read_csv(tmp_path / "summary.csv").iloc[0]
     assert pd.isna(row["braking_distance_m"])
     assert row["status"] == "time-limit"
@@ -44,12 +45,12 @@ def test_no_answer_is_an_empty_field(unfinished: Result, tmp_path: Path) -> None
 
 def test_awkward_text_survives(result: Result, tmp_path: Path) -> None:
     awkward = replace(result, warnings=('a "roof", passed', "über"))
-    write_summary(awkward, tmp_path / "summary.csv")
+    write_table([awkward.row(Shown.SUMMARY)], tmp_path / "summary.csv")
     assert pd.read_csv(tmp_path / "summary.csv")["warnings"][0] == 'a "roof", passed; über'
 
 
 def test_one_row_per_stop(result: Result, unfinished: Result, tmp_path: Path) -> None:
-    write_table([summary_row(result), summary_row(unfinished)], tmp_path / "table.csv")
+    write_table([result.row(Shown.SUMMARY), unfinished.row(Shown.SUMMARY)], tmp_path / "table.csv")
     assert list(pd.read_csv(tmp_path / "table.csv")["status"]) == ["stopped", "time-limit"]
 
 
@@ -57,7 +58,7 @@ def test_a_table_that_cannot_be_written_whole_leaves_the_old_one(result: Result,
     path = tmp_path / "table.csv"
     path.write_text("old")
     with pytest.raises(ValueError, match="fieldnames"):
-        write_table([summary_row(result), {"other": 1}], path)
+        write_table([result.row(Shown.SUMMARY), {"other": 1}], path)
     with pytest.raises(ValueError, match="at least one row"):
         write_table([], path)
     assert path.read_text() == "old"
@@ -67,7 +68,7 @@ def test_a_table_that_cannot_be_written_whole_leaves_the_old_one(result: Result,
 def test_a_folder_in_the_way_is_the_users_matter(result: Result, tmp_path: Path) -> None:
     (tmp_path / "summary.csv").mkdir()
     with pytest.raises(FileError, match=r"cannot write .*summary\.csv"):
-        write_summary(result, tmp_path / "summary.csv")
+        write_table([result.row(Shown.SUMMARY)], tmp_path / "summary.csv")
 
 
 FORMULAS = [
@@ -94,7 +95,7 @@ def test_a_spreadsheet_finds_no_formula(result: Result, tmp_path: Path, text: st
         cells = [row[0] for row in csv.reader(file)]
     kept = "'" + text.replace("\r", "\n")
     assert cells == [kept] * 2
-    write_summary(replace(result, reason=text), tmp_path / "summary.csv")
+    write_table([replace(result, reason=text).row(Shown.SUMMARY)], tmp_path / "summary.csv")
     assert pd.read_csv(tmp_path / "summary.csv")["reason"][0] == kept
 
 

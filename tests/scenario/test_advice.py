@@ -9,12 +9,12 @@ from malformed_case import BASE, edited
 from written_quantities import UNITS, factor, measures, quantity, slip, spelt_number, spelt_unit
 
 from slosh_cli.errors import Problem, ScenarioError, ValueRefused
-from slosh_cli.scenario import Liquid, Rectangular, Scenario, TankScenario, parse_scenario, replace
+from slosh_cli.scenario import Liquid, Rectangular, Scenario, TankScenario, parse_scenario
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Count, Leaf, Number, Quantity, Range
-from slosh_cli.scenario.polygon import Outline
-from slosh_cli.scenario.schema_tank import SHAPES, Baffle, Coefficient
-from slosh_cli.scenario.tree import leaves_of, spot_of
+from slosh_cli.scenario.schema_polygon import Outline
+from slosh_cli.scenario.schema_tank import Baffle, Coefficient
+from slosh_cli.scenario.tree import spot_of
 from slosh_cli.scenario.units import DIMENSIONS, parse_quantity
 
 SAME = 1e-12
@@ -30,15 +30,15 @@ def every_leaf() -> Iterator[tuple[str, Leaf]]:
     """The leaves of the whole schema with their places."""
 
     def below(model: type[Part], prefix: str) -> Iterator[tuple[str, Leaf]]:
-        for name, leaf in leaves_of(model):
-            part = spot_of(model, name).part
-            if leaf is not None:
-                yield prefix + name, leaf
-            elif part is not None:
-                yield from below(part, f"{prefix}{name}.")
+        for name in model.model_fields:
+            spot = spot_of(model, name)
+            if spot.leaf is not None:
+                yield prefix + name, spot.leaf
+            elif spot.part is not None:
+                yield from below(spot.part, f"{prefix}{name}.")
 
     yield from below(Scenario, "")
-    for model in (*SHAPES.values(), Coefficient, Baffle):
+    for model in (*spot_of(Scenario, "tank").parts.values(), Coefficient, Baffle):
         yield from below(model, f"{model.__name__}.")
 
 
@@ -196,7 +196,7 @@ def remedies(problem: Problem) -> list[str]:
 def problems_of(scenario: Scenario, changes: dict[str, object]) -> dict[tuple[str, str], Problem]:
     """What is wrong with a changed scenario, by key and the words of the rule without its numbers."""
     try:
-        replace(scenario, changes)
+        scenario.with_(changes)
     except ScenarioError as error:
         return {(entry.key, re.sub("[0-9.e+-]+", "#", entry.rule)): entry for entry in error.problems}
     return {}
@@ -221,9 +221,9 @@ def test_the_slot_of_a_high_tank_is_told_right() -> None:
     liquid = Liquid(model="shallow-water", density=1000.0)
     low = TankScenario(format=1, name="low", tank=Rectangular(length=30, fill=0.5, liquid=liquid, width=2, height=10))
     with pytest.raises(ScenarioError) as caught:
-        replace(low, {"tank.height": 19.0})
+        low.with_({"tank.height": 19.0})
     (offer,) = remedies(caught.value.problems[0])
-    assert replace(low, {"tank.height": 19.0, "tank.liquid.slot_speed": offer}).tank.height == 19.0
+    assert low.with_({"tank.height": 19.0, "tank.liquid.slot_speed": offer}).tank.height == 19.0
 
 
 def test_a_baffle_may_stand_where_it_is_told_to() -> None:
@@ -232,12 +232,12 @@ def test_a_baffle_may_stand_where_it_is_told_to() -> None:
     for _ in range(30):
         length = chance.uniform(3.0, 20.0)
         with pytest.raises(ScenarioError) as caught:
-            replace(base, {"tank.length": length, "tank.baffles": [{"position": 0.0, "opening": 0.3}]})
+            base.with_({"tank.length": length, "tank.baffles": [{"position": 0.0, "opening": 0.3}]})
         ends = offers(caught.value.problems[0].fix)
         assert len(ends) == 2
         for end in ends:
             baffles = [{"position": end, "opening": 0.3}]
-            assert len(replace(base, {"tank.length": length, "tank.baffles": baffles}).tank.baffles) == 1
+            assert len(base.with_({"tank.length": length, "tank.baffles": baffles}).tank.baffles) == 1
 
 
 def test_an_outline_may_lie_where_it_is_told_to() -> None:

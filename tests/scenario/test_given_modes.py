@@ -15,7 +15,6 @@ from slosh_cli.scenario import (
     load_tank_scenario,
     packaged_scenarios,
     parse_scenario,
-    replace,
     scenario_to_yaml,
 )
 from slosh_cli.study.build import Wishes, build
@@ -36,7 +35,7 @@ def test_a_changed_tank_needs_coefficients_of_its_own(key: str) -> None:
     with pytest.raises(OutlivedCoefficientsError, match=rf"--set {key}: must stay.* set `tank.coefficients=computed`"):
         load_scenario(PAPER, [changed])
     with pytest.raises(OutlivedCoefficientsError, match=rf"^{key}: must stay"):
-        replace(load_scenario(PAPER), {key: SHAPING[key]})
+        load_scenario(PAPER).with_({key: SHAPING[key]})
     for order in ([changed, "tank.coefficients=computed"], ["tank.coefficients=computed", changed]):
         assert load_scenario(PAPER, order).tank.coefficients == "computed"
     assert load_scenario(PAPER, [changed, NEW]).tank.coefficients[0].frequency == 1.0  # type: ignore[union-attr]
@@ -73,9 +72,9 @@ def test_the_same_tank_keeps_its_coefficients(same: str) -> None:
 def test_a_load_that_uses_none_drops_them_for_good(model: str) -> None:
     found = load_scenario(PAPER, ["tank.fill=0.9", f"tank.liquid.model={model}"])
     assert found.tank.coefficients == "computed"
-    assert replace(load_scenario(PAPER), {"tank.fill": 0.9, "tank.liquid.model": model}) == found
+    assert load_scenario(PAPER).with_({"tank.fill": 0.9, "tank.liquid.model": model}) == found
     read_back = parse_scenario(scenario_to_yaml(found))
-    assert replace(read_back, {"tank.liquid.model": "modal"}).tank.coefficients == "computed"
+    assert read_back.with_({"tank.liquid.model": "modal"}).tank.coefficients == "computed"
 
 
 def test_a_tank_alone_and_its_commands_are_held_to_the_same() -> None:
@@ -122,5 +121,5 @@ def test_packaged_scenarios_but_the_papers_own_are_computed() -> None:
 @pytest.mark.slow
 def test_the_unloading_follows_the_fill() -> None:
     """At 90 % the coefficients of 50 % gave an unloading of 0.281; those of the tank itself give 0.194."""
-    found = replace(load_scenario(PAPER), {"tank.fill": 0.9, "tank.coefficients": "computed"})
+    found = load_scenario(PAPER).with_({"tank.fill": 0.9, "tank.coefficients": "computed"})
     assert simulate(found).max_wheel_unloading == pytest.approx(0.194, abs=5e-4)

@@ -17,7 +17,6 @@ from slosh_cli.scenario import (
     load_tank_scenario,
     packaged_scenarios,
     parse_scenario,
-    replace,
     scenario_to_yaml,
 )
 
@@ -91,7 +90,7 @@ def test_packaged_scenarios() -> None:
         assert found.tank.liquid.model == ("rigid" if name.endswith("solid") else "modal")
         same = {"name": "same", "description": "", "tank.liquid.model": "modal", "braking.initial_speed": 20.0}
         assert found.braking.initial_speed == pytest.approx(speed / 3.6, rel=1e-15)
-        assert replace(found, same) == replace(reference, same)
+        assert found.with_(same) == reference.with_(same)
 
 
 @pytest.mark.parametrize("name", ["paper-160-solid", "paper_160_solid", "paper_160_solid.yaml"])
@@ -157,7 +156,7 @@ def test_changed_and_written_out_it_reads_back_equal(changes: tuple[str, ...], w
     overrides = [change for change in changes if not change.startswith("tank.radius")]
     scenario = load_scenario(write(base), overrides)
     assert parse_scenario(scenario_to_yaml(scenario)) == scenario
-    assert replace(scenario, {}) == scenario
+    assert scenario.with_({}) == scenario
 
 
 def test_overrides_use_units_lists_mappings_and_the_last_one_counts(write: Write) -> None:
@@ -292,8 +291,7 @@ def test_a_missing_file_guesses_the_one_beside_it(write: Write) -> None:
 
 def test_replace_takes_si_numbers_and_texts_and_leaves_the_original(paper: Scenario) -> None:
     before = paper.model_dump()
-    found = replace(
-        paper,
+    found = paper.with_(
         {
             "braking.torque": 12500.0,
             "braking.initial_speed": "160 km/h",
@@ -303,27 +301,27 @@ def test_replace_takes_si_numbers_and_texts_and_leaves_the_original(paper: Scena
             "tank.modes": 3,
             "name": "12",
             "track.rail": {"youngs_modulus": 2.1e11, "second_moment": "3e-5 m^4", "mass_per_length": 54},
-        },
+        }
     )
     assert (found.braking.torque, found.braking.initial_speed) == (12500.0, pytest.approx(160 / 3.6, rel=1e-15))
     assert (found.tank.liquid.model, found.contact.adhesion.mu0) == ("rigid", 0.3)
     assert (found.tank.coefficients, found.tank.modes, found.name) == ("computed", 3, "12")
     assert found.track.rail.model_dump() == {"youngs_modulus": 2.1e11, "second_moment": 3e-5, "mass_per_length": 54.0}
     assert paper.model_dump() == before
-    assert replace(paper, {"contact.adhesion": paper.contact.adhesion}) == paper
+    assert paper.with_({"contact.adhesion": paper.contact.adhesion}) == paper
 
 
 def test_replace_from_computed_to_given_coefficients_and_back(paper: Scenario) -> None:
     given = paper.tank.coefficients
-    computed = replace(paper, {"tank.coefficients": "computed"})
-    assert replace(computed, {"tank.coefficients": given}) == paper
+    computed = paper.with_({"tank.coefficients": "computed"})
+    assert computed.with_({"tank.coefficients": given}) == paper
     with pytest.raises(ScenarioError, match=r"tank\.modes: must not be set where"):
-        replace(replace(computed, {"tank.modes": 2}), {"tank.coefficients": given})
+        computed.with_({"tank.modes": 2}).with_({"tank.coefficients": given})
 
 
 def test_replace_of_a_tank_alone() -> None:
     tank = load_tank_scenario(find_packaged("kolaei-half"))
-    found = replace(tank, {"tank.radius": 1.0, "tank.coefficients": "computed"})
+    found = tank.with_({"tank.radius": 1.0, "tank.coefficients": "computed"})
     assert (type(found), found.tank.width) == (TankScenario, 2.0)
 
 
@@ -342,7 +340,7 @@ def test_replace_of_a_tank_alone() -> None:
 )
 def test_replace_refuses_what_a_file_may_not_have(paper: Scenario, key: str, value: object, message: str) -> None:
     with pytest.raises(ScenarioError) as caught:
-        replace(paper, {key: value})
+        paper.with_({key: value})
     assert str(caught.value).startswith(message)
     assert caught.value.file == "paper-80-liquid"
 

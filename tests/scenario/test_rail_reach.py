@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from slosh_cli.errors import ScenarioError
-from slosh_cli.scenario import parse_scenario, rail_reach, replace, scenario_to_yaml
+from slosh_cli.scenario import parse_scenario, rail_reach, scenario_to_yaml
 from slosh_cli.scenario.rail_reach import computed_lengths, error_of_elements, error_of_ends, fading, margin_for
 from slosh_cli.track.mem import critical_speed, rail_model, steady_shapes
 from slosh_cli.wagon.model import wheel_positions
@@ -125,11 +125,11 @@ def test_a_scenario_without_a_domain_stays_without_one(shipped):
     text = "\n".join(line for line in (SCENARIOS / "paper_80.yaml").read_text().splitlines() if "domain:" not in line)
     scenario = parse_scenario(text)
     assert parse_scenario(scenario_to_yaml(scenario)) == scenario
-    softer = replace(scenario, {"track.foundation.stiffness": 3e5})
+    softer = scenario.with_({"track.foundation.stiffness": 3e5})
     assert softer.track.domain.length is None
     lengths = [computed_lengths(one.track, 1.8, 12.0, 20.0)[0] for one in (scenario, softer)]
     assert lengths[1] > 1.5 * lengths[0]
-    assert replace(scenario, {"track.domain.length": "60 m"}).track.domain.length == 60.0
+    assert scenario.with_({"track.domain.length": "60 m"}).track.domain.length == 60.0
 
 
 def test_given_lengths_stay_as_they_are(shipped):

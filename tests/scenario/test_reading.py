@@ -15,7 +15,6 @@ from slosh_cli.scenario import (
     load_document,
     load_scenario,
     parse_scenario,
-    replace,
     scenario_to_yaml,
 )
 from slosh_cli.scenario.scalars import plain_number, plain_scalar
@@ -123,7 +122,7 @@ def test_other_unknown_keys_stay_refused(text: str) -> None:
 
 def test_a_study_cannot_vary_what_nobody_reads() -> None:
     with pytest.raises(ScenarioError, match="is not a key of a scenario"):
-        replace(SOUND, {"x-foo": "1"})
+        SOUND.with_({"x-foo": "1"})
 
 
 # --------------------------------------------------------------------------------------------------- half characters
@@ -163,7 +162,7 @@ def test_half_a_character_in_an_override(tmp_path: Path) -> None:
             load_scenario(file, [text])
     for key in ("name", "description", "tank.\udcff", "\udcff"):
         with pytest.raises(ScenarioError, match=WRITABLE) as caught:
-            replace(SOUND, {key: "a\udcff"})
+            SOUND.with_({key: "a\udcff"})
         str(caught.value).encode("utf-8")
 
 

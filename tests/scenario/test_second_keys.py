@@ -14,7 +14,6 @@ from slosh_cli.scenario import (
     Scenario,
     load_scenario,
     parse_scenario,
-    replace,
     scenario_to_yaml,
 )
 
@@ -55,7 +54,7 @@ def test_a_diameter_in_python() -> None:
 def test_an_override_of_either_replaces_whichever_the_file_gives(file: Path, text: str, override: str) -> None:
     assert load(file, override, COMPUTED, text=text).tank.width == 2.4
     key, _, value = override.partition("=")
-    assert replace(parse_scenario(text), {key: value} | NEW_MODES).tank.width == 2.4
+    assert parse_scenario(text).with_({key: value} | NEW_MODES).tank.width == 2.4
     with pytest.raises(OutlivedCoefficientsError, match=r"given `1\.2 m` instead of `1\.5 m`"):
         load(file, override, text=text)
 
@@ -67,7 +66,7 @@ def test_the_same_size_by_either_key_keeps_the_given_coefficients(file: Path, te
 
 
 def test_replace_takes_the_number_of_a_diameter_in_metres() -> None:
-    found = replace(parse_scenario(BASE), {"tank.diameter": 2.5, "wagon.wheelset.wheel_diameter": 0.84} | NEW_MODES)
+    found = parse_scenario(BASE).with_({"tank.diameter": 2.5, "wagon.wheelset.wheel_diameter": 0.84} | NEW_MODES)
     assert (found.tank.height, found.wagon.wheelset.wheel_radius) == (2.5, 0.42)
 
 
@@ -108,7 +107,7 @@ def test_two_overrides_of_one_size_are_refused(file: Path, keys: tuple[str, str]
     with pytest.raises(ScenarioError, match="must not be given beside"):
         load(file, *(f"{key}=1.4 m" for key in keys))
     with pytest.raises(ScenarioError, match="must not be given beside"):
-        replace(parse_scenario(BASE), dict.fromkeys(keys, 1.4))
+        parse_scenario(BASE).with_(dict.fromkeys(keys, 1.4))
 
 
 def test_a_misplaced_diameter_is_sent_where_it_belongs(file: Path) -> None:
@@ -129,7 +128,7 @@ def test_a_number_for_the_adhesion_is_a_constant_coefficient(file: Path, written
 
 def test_a_number_for_the_adhesion_in_python_and_changed_in_part(file: Path) -> None:
     base = parse_scenario(BASE)
-    assert replace(base, {"contact.adhesion": 0.15}).contact.adhesion.model_dump() == COULOMB
+    assert base.with_({"contact.adhesion": 0.15}).contact.adhesion.model_dump() == COULOMB
     found = load(file, "contact.adhesion.A=0.5", text=edited(("adhesion: dry", "adhesion: 0.15")))
     assert found.contact.adhesion.model_dump() == COULOMB | {"A": 0.5}
 
@@ -137,4 +136,4 @@ def test_a_number_for_the_adhesion_in_python_and_changed_in_part(file: Path) -> 
 @pytest.mark.parametrize("share", ["60 %", "60%", "600 ‰", "60 percent", "60 per cent", "6,0e1 %"])
 def test_a_fill_in_per_cent_is_the_number(file: Path, share: str) -> None:
     assert load(file, text=edited(("fill: 0.5", f"fill: {share}"))).tank.fill == 0.6
-    assert replace(parse_scenario(BASE), {"tank.fill": share} | NEW_MODES).tank.fill == 0.6
+    assert parse_scenario(BASE).with_({"tank.fill": share} | NEW_MODES).tank.fill == 0.6

@@ -8,9 +8,10 @@ from pydantic import Discriminator, Field, Tag
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.leaves import Number, Quantity, Range
+from slosh_cli.scenario.loader import Root
 from slosh_cli.scenario.rules import Finding
-from slosh_cli.scenario.schema import Root, Scenario, TankScenario
-from slosh_cli.scenario.tree import part_at, places_of, unions
+from slosh_cli.scenario.schema import Scenario, TankScenario
+from slosh_cli.scenario.tree import Spot
 
 
 class Axle(Part):
@@ -113,8 +114,9 @@ def test_a_misspelt_branch_does_not_hide_the_rest() -> None:
 
 def test_scenarios_in_terms_of_the_tree() -> None:
     data = {"tank": {"shape": "rectangular", "baffles": [{}], "coefficients": [{}]}}
-    names = {path: part_at(Scenario, data, path) for path in [("tank",), ("tank", "baffles", 0), ("wagon", "bogie")]}
+    root = Spot(part=Scenario)
+    names = {path: root.part_at(data, path) for path in [("tank",), ("tank", "baffles", 0), ("wagon", "bogie")]}
     assert [part.__name__ for part in names.values() if part] == ["Rectangular", "Baffle", "Bogie"]
-    assert [path for path, _ in unions(Scenario)] == [("tank",)]
-    assert list(places_of(TankScenario, "density")) == [("tank", "liquid", "density")]
-    assert list(places_of(TankScenario, "radius")) == []
+    assert [path for path, spot, _ in root.inner(data) if spot.parts] == [("tank",)]
+    assert list(Spot(part=TankScenario).places("density", {})) == [("tank", "liquid", "density")]
+    assert list(Spot(part=TankScenario).places("radius", {})) == []

@@ -12,7 +12,7 @@ from study_tools import PAPER, QuickSolver
 
 import slosh_cli.results.simulate
 from slosh_cli.results.result import Result
-from slosh_cli.scenario import Scenario, load_scenario, replace
+from slosh_cli.scenario import Scenario, load_scenario
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +22,7 @@ def paper() -> Scenario:
 
 @pytest.fixture(scope="session")
 def template(paper: Scenario) -> Result:
-    return plausible_run(replace(paper, {"braking.initial_speed": "5 km/h"}))
+    return plausible_run(paper.with_({"braking.initial_speed": "5 km/h"}))
 
 
 @pytest.fixture

@@ -12,8 +12,7 @@ from pathlib import Path
 
 from study_tools import CHEAP, count, journal_rows, run_slosh, start_slosh
 
-from slosh_cli.scenario import find_packaged, load_scenario, replace
-from slosh_cli.study.build import PAPER_WAGON
+from slosh_cli.scenario import load_scenario
 from slosh_cli.study.outcome import solve
 from slosh_cli.study.plan import Stop
 
@@ -86,13 +85,13 @@ def check_table(folder: Path, stops: int) -> None:
     places = [(float(row["v0_km_h"]), float(row["torque_kN_m"]), row["liquid"]) for row in rows]
     assert places == sorted(set(places))
     values = [option for option in CHEAP if "=" in option]
-    base = load_scenario(find_packaged(PAPER_WAGON), values)
+    base = load_scenario("paper-80-liquid", values)
     for row in rows[:: stops // 20]:
         changes = {
             "braking.initial_speed": f"{row['v0_km_h']} km/h", "braking.torque": f"{row['torque_kN_m']} kN m",
             "tank.liquid.model": row["liquid"],
         }  # fmt: skip
-        answer = solve(Stop(0, "", replace(base, changes))).answer
+        answer = solve(Stop(0, "", base.with_(changes))).answer
         assert row["status"] == answer["status"]
         assert row["braking_distance_m"] == str(answer["braking_distance_m"] or "")
 

@@ -3,7 +3,7 @@
 import pytest
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.study.axis import Axis, listed, measured, values_of
+from slosh_cli.study.axis import Axis, _listed, expanded, measured
 
 
 @pytest.mark.parametrize(
@@ -30,11 +30,11 @@ from slosh_cli.study.axis import Axis, listed, measured, values_of
     ],
 )  # fmt: skip
 def test_lists_and_ranges(spec: str, expected: tuple[str, ...]) -> None:
-    assert values_of(spec) == expected
+    assert expanded(spec) == expected
 
 
 def test_both_ends_of_a_long_range_are_in_and_every_value_is_the_shortest_decimal() -> None:
-    values = values_of("0:1:0.001")
+    values = expanded("0:1:0.001")
     assert len(values) == 1001
     assert [float(value) for value in values] == [k / 1000 for k in range(1001)]
 
@@ -49,7 +49,7 @@ def test_both_ends_of_a_long_range_are_in_and_every_value_is_the_shortest_decima
     ],
 )
 def test_a_bare_number_takes_the_unit_of_the_option(spec: str, expected: tuple[str, ...]) -> None:
-    assert values_of(spec, "km/h") == expected
+    assert expanded(spec, "km/h") == expected
 
 
 @pytest.mark.parametrize(
@@ -70,27 +70,27 @@ def test_a_bare_number_takes_the_unit_of_the_option(spec: str, expected: tuple[s
 )
 def test_what_is_neither_list_nor_range_is_refused(spec: str, rule: str) -> None:
     with pytest.raises(ValueRefused, match=rule):
-        values_of(spec)
+        expanded(spec)
 
 
 def test_a_range_that_misses_its_stop_names_one_that_does_not() -> None:
     with pytest.raises(ValueRefused, match=r"`2.5:27.5:2.5`") as caught:
-        values_of("2.5:28:2.5")
-    assert values_of(caught.value.fix.split("`")[1])[-1] == "27.5"
+        expanded("2.5:28:2.5")
+    assert expanded(caught.value.fix.split("`")[1])[-1] == "27.5"
 
 
 def test_such_a_range_keeps_its_unit() -> None:
     with pytest.raises(ValueRefused) as caught:
-        values_of("10:28:10 m/s", "km/h")
-    assert values_of(caught.value.fix.split("`")[1], "km/h") == ("10 m/s", "20 m/s")
+        expanded("10:28:10 m/s", "km/h")
+    assert expanded(caught.value.fix.split("`")[1], "km/h") == ("10 m/s", "20 m/s")
 
 
 def test_lists_of_a_file_become_texts() -> None:
-    assert listed([0.5, 3, "10 m", {"mu0": 0.3, "B": "0.6 s/m"}, [1, 2.5]]) == (
+    assert _listed([0.5, 3, "10 m", {"mu0": 0.3, "B": "0.6 s/m"}, [1, 2.5]]) == (
         "0.5", "3", "10 m", "{mu0: 0.3, B: 0.6 s/m}", "[1, 2.5]",
     )  # fmt: skip
     with pytest.raises(ValueRefused, match="at least one value"):
-        listed([])
+        _listed([])
 
 
 def test_numbers_and_units_are_told_from_words() -> None:
@@ -111,7 +111,7 @@ def test_an_axis_has_a_unit_when_all_its_values_share_it() -> None:
 
 
 def test_a_table_tells_percentages_as_numbers_and_units_in_one_form() -> None:
-    share = Axis("tank.fill", values_of("20:60:20 %"), "")
+    share = Axis("tank.fill", expanded("20:60:20 %"), "")
     assert (share.values, share.unit) == (("20 %", "40 %", "60 %"), "")
     assert [share.plain(place) for place in range(3)] == [0.2, 0.4, 0.6]
     mixed = Axis("tank.fill", ("0.2", "40 %"), "")

@@ -8,7 +8,7 @@ import pytest
 from study_tools import PAPER
 
 from slosh_cli.errors import ScenarioError, UsageError
-from slosh_cli.scenario import Scenario, find_packaged, replace
+from slosh_cli.scenario import Scenario, find_packaged
 from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.key import stop_key
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
@@ -174,9 +174,9 @@ def test_mistakes_in_a_study_file_are_named_with_their_line(tmp_path: Path, text
 
 def test_the_key_knows_everything_that_changes_the_answer_and_nothing_else(paper: Scenario) -> None:
     key = stop_key(paper)
-    same = replace(paper, {"name": "other", "description": "words", "output.interval": "1 s"})
+    same = paper.with_({"name": "other", "description": "words", "output.interval": "1 s"})
     assert stop_key(same) == key
-    assert stop_key(replace(paper, {"braking.initial_speed": "80.0 km/h"})) == key
+    assert stop_key(paper.with_({"braking.initial_speed": "80.0 km/h"})) == key
     for change in (
         {"braking.torque": "5.000001 kN m"},
         {"solver.tolerance": 1e-5},
@@ -185,7 +185,7 @@ def test_the_key_knows_everything_that_changes_the_answer_and_nothing_else(paper
         {"tank.coefficients": "computed"},
         {"contact.stiffness": "9.4e10 N/m^1.5"},
     ):
-        assert stop_key(replace(paper, change)) != key
+        assert stop_key(paper.with_(change)) != key
 
 
 def test_another_result_version_makes_other_keys(paper: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ from study_tools import CHEAP, QuickSolver, journal_rows, run_slosh, start_slosh
 from slosh_cli.errors import UsageError
 from slosh_cli.study import cluster
 from slosh_cli.study.build import Wishes, build
-from slosh_cli.study.cluster import Cluster, ClusterError, solve_batch, this_version
+from slosh_cli.study.cluster import Cluster, ClusterError, _solve_batch, _this_version
 from slosh_cli.study.key import RESULT_VERSION
 
 TABLE = "outputs/cheap/braking_distance.csv"
@@ -158,7 +158,7 @@ def test_without_dask_the_user_is_told_what_to_install(monkeypatch: pytest.Monke
 
 def test_a_worker_with_another_version_refuses_the_batch() -> None:
     with pytest.raises(ClusterError, match=r"a worker has slosh .*, but the study needs slosh 99"):
-        solve_batch((), "slosh 99")
+        _solve_batch((), "slosh 99")
 
 
 class StandIn:
@@ -244,7 +244,7 @@ def test_a_stop_that_kills_every_worker_fails_alone(connected: Any, solver: Quic
 def test_batches_grow_to_a_few_seconds_of_work_and_shrink_towards_the_end(
     connected: Any, solver: QuickSolver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "BATCH_SECONDS", 0.05)
+    monkeypatch.setattr(cluster, "_BATCH_SECONDS", 0.05)
     workers, client = connected(lambda function, batch, needed: Future(function(batch, needed)))
     found = outcomes(build(Wishes(speeds="20:59:0.1", torques="5", liquids="rigid")), workers)
     assert sorted(one.index for one in found) == list(range(391))
@@ -345,5 +345,5 @@ def test_a_lost_connection_ends_the_study_though_no_future_says_so(
 
 
 def test_both_ends_share_program_and_result_version() -> None:
-    assert this_version().startswith("slosh ")
-    assert f"results {RESULT_VERSION}" in this_version()
+    assert _this_version().startswith("slosh ")
+    assert f"results {RESULT_VERSION}" in _this_version()

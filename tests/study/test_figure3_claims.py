@@ -6,7 +6,7 @@ import pytest
 
 from slosh_cli.scenario import Scenario
 from slosh_cli.study.build import Wishes, build
-from slosh_cli.study.claims import Finding, Verdict, applies, verdicts
+from slosh_cli.study.claims import Judgement, Verdict, applies, verdicts
 
 TORQUES = [2.5 * k for k in range(1, 13)]
 
@@ -41,7 +41,7 @@ def without(rows: list[dict[str, Any]], speed: float, torque: float, liquid: str
 
 def test_a_figure_like_the_papers_confirms_all_of_it() -> None:
     found = by_claim(figure())
-    assert {verdict.finding for verdict in found.values()} == {Finding.HOLDS}
+    assert {verdict.finding for verdict in found.values()} == {Judgement.HOLDS}
     assert "80 km/h modal: 17.5 kN m" in found["fig3-optimum"].evidence
     assert "longer at 24 of 24 points" in found["fig3-longer"].evidence
     assert "Most at 160 km/h 30 kN m" in found["fig3-longer"].evidence
@@ -49,19 +49,19 @@ def test_a_figure_like_the_papers_confirms_all_of_it() -> None:
 
 
 def test_a_best_torque_elsewhere_denies_the_optimum() -> None:
-    assert by_claim(figure(best=25.0))["fig3-optimum"].finding is Finding.FAILS
+    assert by_claim(figure(best=25.0))["fig3-optimum"].finding is Judgement.FAILS
 
 
 def test_an_optimum_at_one_speed_only_is_half_a_claim() -> None:
     mixed = [one for one in figure() if one["v0_km_h"] == 80.0]
     mixed += [one for one in figure(best=25.0) if one["v0_km_h"] == 160.0]
-    assert by_claim(mixed)["fig3-optimum"].finding is Finding.IN_PART
+    assert by_claim(mixed)["fig3-optimum"].finding is Judgement.IN_PART
 
 
 def test_torques_that_end_within_the_range_cannot_tell_its_optimum() -> None:
     narrow = [one for one in figure() if one["torque_kN_m"] <= 20.0]
     verdict = by_claim(narrow)["fig3-optimum"]
-    assert verdict.finding is Finding.OPEN
+    assert verdict.finding is Judgement.OPEN
     assert "do not reach beyond" in verdict.evidence
 
 
@@ -69,24 +69,29 @@ def test_a_liquid_that_stops_sooner_somewhere_is_named() -> None:
     rows = figure()
     rows[0]["braking_distance_m"] *= 0.9
     verdict = by_claim(rows)["fig3-longer"]
-    assert verdict.finding is Finding.IN_PART
+    assert verdict.finding is Judgement.IN_PART
     assert "not at 80 km/h 2.5 kN m" in verdict.evidence
 
 
 def test_a_liquid_that_stops_sooner_everywhere_and_differs_most_when_slow_denies_the_claim() -> None:
     verdict = by_claim(figure(ratio=0.6))["fig3-longer"]
-    assert verdict.finding is Finding.FAILS
+    assert verdict.finding is Judgement.FAILS
 
 
-@pytest.mark.parametrize(("ratio", "finding"), [(1.11, Finding.HOLDS), (1.19, Finding.HOLDS), (1.09, Finding.FAILS),
-                                                (1.21, Finding.FAILS), (0.85, Finding.FAILS)])  # fmt: skip
-def test_about_15_percent_is_10_to_20(ratio: float, finding: Finding) -> None:
+@pytest.mark.parametrize(
+    ("ratio", "finding"),
+    [
+        (1.11, Judgement.HOLDS), (1.19, Judgement.HOLDS), (1.09, Judgement.FAILS), (1.21, Judgement.FAILS),
+        (0.85, Judgement.FAILS),
+    ],
+)  # fmt: skip
+def test_about_15_percent_is_10_to_20(ratio: float, finding: Judgement) -> None:
     assert by_claim(figure(ratio=ratio))["fig3-15-percent"].finding is finding
 
 
 def test_a_stop_without_an_answer_leaves_the_claim_open_and_is_named() -> None:
     found = by_claim(without(figure(), 160.0, 20.0, "modal"))
-    assert found["fig3-15-percent"].finding is Finding.OPEN
+    assert found["fig3-15-percent"].finding is Judgement.OPEN
     assert "liquid: pitch-limit" in found["fig3-15-percent"].evidence
     assert "160 km/h modal: 17.5 kN m" in found["fig3-optimum"].evidence
     assert "without an answer at 20 kN m" in found["fig3-optimum"].evidence
@@ -103,9 +108,9 @@ def test_what_lies_outside_linear_theory_says_so() -> None:
 def test_another_model_of_the_liquid_is_judged_by_its_own_stops() -> None:
     rows = figure() + [one | {"liquid": "shallow-water"} for one in figure(best=25.0) if one["liquid"] == "modal"]
     found = {verdict.claim: verdict for verdict in verdicts(rows, "shallow-water")}
-    assert found["fig3-optimum"].finding is Finding.IN_PART
+    assert found["fig3-optimum"].finding is Judgement.IN_PART
     assert "80 km/h shallow-water: 25 kN m" in found["fig3-optimum"].evidence
-    assert by_claim(rows)["fig3-optimum"].finding is Finding.HOLDS
+    assert by_claim(rows)["fig3-optimum"].finding is Judgement.HOLDS
 
 
 @pytest.mark.parametrize(

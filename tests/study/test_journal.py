@@ -15,13 +15,13 @@ import pytest
 from slosh_cli.errors import UsageError
 from slosh_cli.results.files import FileError
 from slosh_cli.study import lock
-from slosh_cli.study.journal import JOURNAL, Journal, remove
+from slosh_cli.study.journal import JOURNAL, Journal
 from slosh_cli.study.lock import LOCK, FolderInUse, locked
-from slosh_cli.study.outcome import Outcome
+from slosh_cli.study.outcome import FinishedStop
 
 
-def outcome(key: str, *, final: bool = True, **answer: Any) -> Outcome:
-    return Outcome(0, key, {"status": "stopped", "braking_distance_m": 0.1 + 0.2, **answer}, final, 0.25)
+def outcome(key: str, *, final: bool = True, **answer: Any) -> FinishedStop:
+    return FinishedStop(0, key, {"status": "stopped", "braking_distance_m": 0.1 + 0.2, **answer}, final, 0.25)
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def test_a_damaged_journal_is_refused_with_a_way_out(path: Path, text: str) -> N
     path.write_text(text)
     with pytest.raises(FileError, match=r"damaged or no journal of slosh .*--fresh"):
         Journal(path)
-    remove(path)
+    Journal.remove(path)
     with Journal(path) as journal:
         assert len(journal) == 0
 
@@ -124,8 +124,8 @@ def test_removing_a_journal_leaves_nothing_of_it(path: Path) -> None:
     journal._file.close()
     path.with_name("journal.sqlite-wal").write_text("the log of a killed process")
     path.with_name("journal.sqlite-shm").write_text("and its index")
-    remove(path)
-    remove(path)
+    Journal.remove(path)
+    Journal.remove(path)
     assert list(path.parent.iterdir()) == []
 
 
@@ -142,11 +142,11 @@ FILLING = """
 import resource, sys
 from pathlib import Path
 from slosh_cli.study.journal import Journal
-from slosh_cli.study.outcome import Outcome
+from slosh_cli.study.outcome import FinishedStop
 resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 with Journal(Path(sys.argv[1])) as journal:
     for k in range(1000):
-        journal.add([Outcome(k, f"key {k}", {"status": "stopped", "k": k, "text": "x" * 1000}, True, 0.1)])
+        journal.add([FinishedStop(k, f"key {k}", {"status": "stopped", "k": k, "text": "x" * 1000}, True, 0.1)])
         print(k, flush=True)
 """
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from slosh_cli.scenario import Scenario, replace
+from slosh_cli.scenario import Scenario
 from slosh_cli.study.key import RESULT_VERSION, history_key, stop_key
 from slosh_cli.study.outcome import solve
 from slosh_cli.study.plan import Stop
@@ -56,15 +56,15 @@ ANSWERS: dict[int, list[tuple[dict[str, Any], float]]] = {
 @pytest.mark.parametrize("number", range(len(ANSWERS[RESULT_VERSION])))
 def test_answers_are_those_of_this_result_version(paper: Scenario, number: int) -> None:
     changes, distance = ANSWERS[RESULT_VERSION][number]
-    scenario = replace(paper, changes)
+    scenario = paper.with_(changes)
     found = solve(Stop(0, "", scenario)).answer["braking_distance_m"]
     assert found == pytest.approx(distance, rel=ACCURACY), "raise RESULT_VERSION and add its answers here"
 
 
 @pytest.mark.parametrize("model", ["rigid", "modal", "shallow-water"])
 def test_the_answer_does_not_depend_on_what_its_key_leaves_out(paper: Scenario, model: str) -> None:
-    stop = replace(paper, {"braking.torque": "10 kN m", "tank.liquid.model": model, "solver.tolerance": 1e-3})
-    other = replace(stop, {"output.interval": 0.1, "name": "another", "description": "of it"})
+    stop = paper.with_({"braking.torque": "10 kN m", "tank.liquid.model": model, "solver.tolerance": 1e-3})
+    other = stop.with_({"output.interval": 0.1, "name": "another", "description": "of it"})
     assert stop_key(stop) == stop_key(other)
     assert history_key(stop) != history_key(other)
     assert solve(Stop(0, "", stop)).answer == solve(Stop(0, "", other)).answer
@@ -72,6 +72,6 @@ def test_the_answer_does_not_depend_on_what_its_key_leaves_out(paper: Scenario, 
 
 def test_the_liquid_of_a_real_stop_is_judged(paper: Scenario) -> None:
     strong = {"braking.torque": "10 kN m", "solver.tolerance": 1e-2}
-    assert solve(Stop(0, "", replace(paper, strong))).answer["liquid_in_range"] is False
-    assert solve(Stop(0, "", replace(paper, strong | {"tank.liquid.model": "rigid"}))).answer["liquid_in_range"] is True
-    assert solve(Stop(0, "", replace(paper, {"braking.torque": "2 kN m"}))).answer["liquid_in_range"] is True
+    assert solve(Stop(0, "", paper.with_(strong))).answer["liquid_in_range"] is False
+    assert solve(Stop(0, "", paper.with_(strong | {"tank.liquid.model": "rigid"}))).answer["liquid_in_range"] is True
+    assert solve(Stop(0, "", paper.with_({"braking.torque": "2 kN m"}))).answer["liquid_in_range"] is True

@@ -21,7 +21,7 @@ from slosh_cli.study.build import Wishes, build
 from slosh_cli.study.journal import JOURNAL, Journal
 from slosh_cli.study.outcome import solve
 from slosh_cli.study.plan import Stop, Study
-from slosh_cli.study.runner import answer, history_file, plan, run_study
+from slosh_cli.study.runner import _history_file, answer, plan, run_study
 from slosh_cli.study.table import rows
 from slosh_cli.study.threads import Threads
 
@@ -231,7 +231,7 @@ def test_histories_are_kept_when_asked_for(solver: QuickSolver, tmp_path: Path) 
     files = [str(row["history"]) for row in found]
     assert len(set(files)) == 16
     assert all((tmp_path / file).is_file() for file in files)
-    (tmp_path / history_file(study.stop(3).scenario)).unlink()
+    (tmp_path / _history_file(study.stop(3).scenario)).unlink()
     assert carry_out(study, tmp_path) == (15, 1)
 
 
@@ -277,7 +277,7 @@ def test_a_history_that_cannot_be_written_costs_no_row(
     solver: QuickSolver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study = build(replace(STUDY, histories=True))
-    write, lost = slosh_cli.results.hdf5.write_history, history_file(study.stop(3).scenario)
+    write, lost = slosh_cli.results.hdf5.write_history, _history_file(study.stop(3).scenario)
 
     def fails(result: Result, path: Path) -> None:
         if path == tmp_path / lost:

@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from slosh_cli.cli.sweep_figures import pages
 from slosh_cli.report import figures
-from slosh_cli.report.study_figures import OUTSIDE, Mark, Page, Panel, braking_distance, draw_study
+from slosh_cli.report.study_figures import OUTSIDE, braking_distance, draw_study
+from slosh_cli.report.study_pages import Mark, Page, StopsPanel, pages
 from slosh_cli.results.result import Status
 from slosh_cli.study.build import Wishes, build
 
@@ -28,7 +28,10 @@ def page(**changes: Any) -> Page:
         Mark(10.0, None, PITCH_LIMIT, False), Mark(12.5, 101.0, STOPPED, False), Mark(15.0, 103.0, STOPPED, False),
     ]  # fmt: skip
     solid = [Mark(2.5 * k, 440.0 / k, STOPPED, True) for k in range(1, 7)]
-    panels = [Panel("80 km/h", {"modal": liquid, "rigid": solid}), Panel("160 km/h", {"modal": liquid, "rigid": solid})]
+    panels = [
+        StopsPanel("80 km/h", {"modal": liquid, "rigid": solid}),
+        StopsPanel("160 km/h", {"modal": liquid, "rigid": solid}),
+    ]
     given: dict[str, Any] = {
         "title": "Braking distance", "conditions": "a wagon", "label": "torque / kN m", "unit": "kN m",
         "best": "most effective torque", "panels": panels,
@@ -71,7 +74,7 @@ def test_no_line_leads_to_a_stop_without_an_answer_and_dotted_ones_to_those_outs
 
 def test_the_legend_of_three_models_stays_on_the_page() -> None:
     given = page()
-    panels = [Panel(one.title, {**one.curves, "shallow-water": one.curves["rigid"]}) for one in given.panels]
+    panels = [StopsPanel(one.title, {**one.curves, "shallow-water": one.curves["rigid"]}) for one in given.panels]
     figure = braking_distance(page(panels=panels))
     (legend,) = figure.legends
     box = legend.get_window_extent()
@@ -107,12 +110,14 @@ def test_the_legend_names_what_occurs_and_nothing_else() -> None:
     assert legend(page()) == [
         "liquid (modal)", "equivalent solid", "outside linear theory", "pitch-limit", "most effective torque",
     ]  # fmt: skip
-    fine = Panel("", {"rigid": [Mark(1.0, 5.0, STOPPED, True), Mark(2.0, 4.0, STOPPED, True)]})
+    fine = StopsPanel("", {"rigid": [Mark(1.0, 5.0, STOPPED, True), Mark(2.0, 4.0, STOPPED, True)]})
     assert legend(page(panels=[fine])) == ["equivalent solid", "most effective torque"]
 
 
 def test_a_panel_without_any_answer_says_so() -> None:
-    nothing = Panel("80 km/h", {"modal": [Mark(1.0, None, PITCH_LIMIT, False), Mark(2.0, None, PITCH_LIMIT, False)]})
+    nothing = StopsPanel(
+        "80 km/h", {"modal": [Mark(1.0, None, PITCH_LIMIT, False), Mark(2.0, None, PITCH_LIMIT, False)]}
+    )
     (axes,) = braking_distance(page(panels=[nothing])).axes
     assert [text.get_text() for text in axes.texts] == ["no stop has an answer"]
     assert len(lines(axes, BLUE, "x")) == 2
@@ -198,7 +203,7 @@ def test_many_speeds_share_as_few_figures_as_there_must_be() -> None:
 
 
 def test_a_wide_figure_has_no_more_pixels_across(tmp_path: Path) -> None:
-    six = page(panels=[Panel(f"{speed} km/h", page().panels[0].curves) for speed in range(6)])
+    six = page(panels=[StopsPanel(f"{speed} km/h", page().panels[0].curves) for speed in range(6)])
     (png, _) = draw_study([six], tmp_path)
     assert Image.open(png).size[0] == pytest.approx(2080, abs=2)
 

@@ -41,7 +41,7 @@ def test_a_case_keeps_within_its_tolerances(name):
     data = read_case(name)
     if not registry.is_available(data):
         pytest.skip(f"needs {data.needs}")
-    result = registry.run(data)
+    result = registry.case_result(data)
     assert result.passed, [row for row in result.rows if not row.passed]
     assert result.chart is not None
     assert len({row.quantity for row in result.rows}) == len(result.rows)

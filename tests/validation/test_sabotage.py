@@ -58,7 +58,7 @@ def test_an_error_in_memory_turns_the_case_red(name, fresh):
         for module in list(sys.modules.values()):  # where it was imported by name
             if getattr(module, "__name__", "").startswith("slosh_cli.") and getattr(module, function, None) is true:
                 fresh.setattr(module, function, wrong)
-    result = registry.run(data)
+    result = registry.case_result(data)
     assert not result.passed
     red = [row.quantity for row in result.rows if not row.passed]
     assert any(sabotage.red in quantity for quantity in red), [row for row in result.rows if not row.passed]

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from slosh_cli.errors import ValueRefused
-from slosh_cli.scenario.leaves import QUANTITY_PATTERN, Leaf
+from slosh_cli.scenario.leaves import Leaf, Quantity
 from slosh_cli.scenario.units import parse_quantity, plain, shown
 
-Points = tuple[tuple[float, float], ...]
-
-EXAMPLE = "[[-1.2, 0.0], [1.2, 0.0], [1.2, 2.0], [-1.2, 2.0]]"
+_EXAMPLE = "[[-1.2, 0.0], [1.2, 0.0], [1.2, 2.0], [-1.2, 2.0]]"
 _MOST = 1000
 _TOLERANCE = 1e-6
 """Of the outline's size: closer points count as one, and corners this far off their mirror image pass."""
@@ -28,10 +26,13 @@ class Outline(Leaf):
 
     largest: float
 
-    def parse(self, value: object) -> Points:
+    def sample(self) -> str:
+        return _EXAMPLE
+
+    def parse(self, value: object) -> tuple[tuple[float, float], ...]:
         if not isinstance(value, list | tuple):
             raise ValueRefused(
-                "must be a list of corners [y, z] in m", plain(value), f"write corners, such as `points: {EXAMPLE}`"
+                "must be a list of corners [y, z] in m", plain(value), f"write corners, such as `points: {_EXAMPLE}`"
             )
         if len(value) > _MOST:
             raise ValueRefused(f"must have at most {_MOST} corners", f"{len(value)}", "leave out corners")
@@ -51,7 +52,7 @@ class Outline(Leaf):
         number = {
             "oneOf": [
                 {"type": "number"},
-                {"type": "string", "pattern": QUANTITY_PATTERN},
+                {"type": "string", "pattern": Quantity.PATTERN},
             ]
         }
         corner = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
@@ -79,7 +80,7 @@ class Outline(Leaf):
 def _check_corners(points: list[tuple[float, float]], tolerance: float) -> None:
     if len(points) < 3:
         raise ValueRefused(
-            "must have at least three corners", f"{len(points)}", f"write more, such as `points: {EXAMPLE}`"
+            "must have at least three corners", f"{len(points)}", f"write more, such as `points: {_EXAMPLE}`"
         )
     for index, (here, there) in enumerate(zip(points, [*points[1:], points[0]], strict=True)):
         if math.dist(here, there) <= tolerance:

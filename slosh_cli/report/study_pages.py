@@ -1,27 +1,75 @@
 """What the figures of a study show: which axis lies along the bottom, which makes panels, which makes figures."""
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final, TypeVar
 
+from slosh_cli.results.result import Status
 from slosh_cli.scenario.schema_run import ADHESIONS
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
 from slosh_cli.study.table import column_of
 
-if TYPE_CHECKING:
-    from slosh_cli.report.study_figures import Mark, Page
+_T = TypeVar("_T")
 
-T = TypeVar("T")
-
-NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
+_NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
 _UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
 _COLUMNS: Final[Mapping[str, str]] = {SPEED: "v0_km_h", TORQUE: "torque_kN_m", LIQUID: "liquid"}
+_FIGURE: Final = re.compile(r"braking_distance(?:_(?P<number>[0-9]+))?\.(?P<kind>png|svg)")
+_MOST_PANELS: Final = 6
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One stop: its place `x` on the axis, braking distance in m (None without an answer), how it ended."""
+
+    x: float
+    distance: float | None
+    status: Status
+    liquid_in_range: bool
+
+
+@dataclass(frozen=True)
+class StopsPanel:
+    """One panel: its title and, by model of the load, its stops in the order of `x`."""
+
+    title: str
+    curves: dict[str, list[Mark]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Page:
+    """One figure: panels that share the horizontal axis `label`; `ticks` name its places where it has no numbers.
+
+    `best` is what the lowest point of a curve is called, `unit` that of the horizontal axis.
+    """
+
+    title: str
+    conditions: str
+    label: str
+    unit: str
+    best: str
+    panels: Sequence[StopsPanel]
+    ticks: Sequence[str] = ()
+
+
+def figure_name(number: int, count: int) -> str:
+    """Name of a figure's files: `braking_distance`, and the figure's `number` from 1 where there are several."""
+    return "braking_distance" if count == 1 else f"braking_distance_{number}"
+
+
+def figure_files(folder: Path) -> list[str]:
+    """Names of the files of figures of studies in `folder`, by their numbers."""
+    found = [(match, file.name) for file in folder.iterdir() if (match := _FIGURE.fullmatch(file.name))]
+    return [name for _, name in sorted(found, key=lambda one: (int(one[0]["number"] or 0), one[0]["kind"]))]
 
 
 def name_of(axis: Axis) -> str:
     """What people call an axis."""
-    return NAMES.get(axis.key, axis.key)
+    return _NAMES.get(axis.key, axis.key)
 
 
 def unit_of(axis: Axis) -> str:
@@ -29,33 +77,31 @@ def unit_of(axis: Axis) -> str:
     return _UNITS.get(axis.key, axis.unit)
 
 
-def column(axis: Axis) -> str:
+def _column(axis: Axis) -> str:
     """The column of the table that holds an axis's value."""
     return _COLUMNS.get(axis.key) or column_of(axis)
 
 
-def text_of(axis: Axis, row: Mapping[str, Any]) -> str:
+def value_text(axis: Axis, row: Mapping[str, Any]) -> str:
     """The value of an axis in a row, with its unit."""
-    value = row[column(axis)]
+    value = row[_column(axis)]
     return f"{value:g} {unit_of(axis)}".rstrip() if isinstance(value, float) else str(value)
 
 
-def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
+def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
     """The figures of a study; none where nothing but the load varies."""
-    from slosh_cli.report.study_figures import MOST_PANELS, Page, Panel
-
     varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
     if not varied:
         return []
     along = next((axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1])
     others = sorted((axis for axis in varied if axis is not along), key=lambda axis: axis.key != SPEED)
     beside, apart = (others[0] if others else None), others[1:]
-    found: dict[str, dict[str, Panel]] = {}
+    found: dict[str, dict[str, StopsPanel]] = {}
     ticks: dict[Any, int] = {}
     for row in rows:
-        page = ", ".join(f"{name_of(axis)} {text_of(axis, row)}" for axis in apart)
+        page = ", ".join(f"{name_of(axis)} {value_text(axis, row)}" for axis in apart)
         title = _panel_title(beside, row)
-        panel = found.setdefault(page, {}).setdefault(title, Panel(title))
+        panel = found.setdefault(page, {}).setdefault(title, StopsPanel(title))
         panel.curves.setdefault(str(row["liquid"]), []).append(_mark(along, row, ticks))
     for panel in (panel for panels in found.values() for panel in panels.values()):
         for marks in panel.curves.values():
@@ -66,11 +112,11 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> "list[Page]":
     return [
         Page("Braking distance", _conditions(study, page), label, unit, best, together, list(ticks))
         for page, panels in found.items()
-        for together in _shared_out(list(panels.values()), MOST_PANELS)
+        for together in _shared_out(list(panels.values()), _MOST_PANELS)
     ]
 
 
-def _shared_out(panels: Sequence[T], most: int) -> Iterator[Sequence[T]]:
+def _shared_out(panels: Sequence[_T], most: int) -> Iterator[Sequence[_T]]:
     """`panels` on as few pages of at most `most` as there must be, about as many on each."""
     count = math.ceil(len(panels) / most)
     for number in range(count):
@@ -80,7 +126,7 @@ def _shared_out(panels: Sequence[T], most: int) -> Iterator[Sequence[T]]:
 def _panel_title(beside: Axis | None, row: Mapping[str, Any]) -> str:
     if beside is None:
         return f"{row['v0_km_h']:g} km/h"
-    return text_of(beside, row) if beside.key in _UNITS else f"{name_of(beside)} {text_of(beside, row)}"
+    return value_text(beside, row) if beside.key in _UNITS else f"{name_of(beside)} {value_text(beside, row)}"
 
 
 def _conditions(study: Study, page: str) -> str:
@@ -99,10 +145,7 @@ def _conditions(study: Study, page: str) -> str:
     return f"{study.name}: {', '.join(words)}"
 
 
-def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> "Mark":
-    from slosh_cli.report.study_figures import Mark
-    from slosh_cli.results.result import Status
-
-    value = row[column(along)]
+def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> Mark:
+    value = row[_column(along)]
     x = value if isinstance(value, float) else float(ticks.setdefault(value, len(ticks)))
     return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("liquid_in_range")))

@@ -8,10 +8,10 @@ if TYPE_CHECKING:
     from slosh_cli.study.plan import Study
     from slosh_cli.study.runner import Plan
 
-SAMPLES: Final = 3
-PATIENCE: Final = 2.0
+_SAMPLES: Final = 3
+_PATIENCE: Final = 2.0
 """Seconds a tried stop may take; a longer one is judged by how far it came."""
-TYPICAL: Final = 0.15
+_TYPICAL: Final = 0.15
 """What a stop of the paper's wagon takes, s of one thread, for want of anything better."""
 
 
@@ -23,7 +23,7 @@ class _Deadline:
         self.fraction = 0.0
 
     def is_set(self) -> bool:
-        return time.perf_counter() - self.began > PATIENCE
+        return time.perf_counter() - self.began > _PATIENCE
 
     def progress(self, fraction: float, _speed: float) -> None:
         self.fraction = fraction
@@ -37,8 +37,8 @@ def seconds_per_stop(study: "Study", planned: "Plan", journal: "Journal | None")
     from slosh_cli.compiled import is_cached
 
     if not planned.open or not is_cached():
-        return TYPICAL
-    count = min(SAMPLES, len(planned.open))
+        return _TYPICAL
+    count = min(_SAMPLES, len(planned.open))
     chosen = [planned.open[(2 * k + 1) * len(planned.open) // (2 * count)] for k in range(count)]
     _try(study, chosen[0])  # loads the kernels
     return sum(_try(study, index) for index in chosen) / count
@@ -54,7 +54,7 @@ def _try(study: "Study", index: int) -> float:
     try:
         simulate(study.stop(index).scenario, progress=deadline.progress, cancel=deadline)
     except Cancelled:
-        return PATIENCE / max(deadline.fraction, 1e-3)
+        return _PATIENCE / max(deadline.fraction, 1e-3)
     except SloshError:
         pass
     return time.perf_counter() - deadline.began

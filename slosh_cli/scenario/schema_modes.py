@@ -12,16 +12,16 @@ from typing import Any, Final, TypeVar
 from pydantic import ValidationError
 
 from slosh_cli.errors import Problem, ScenarioError
-from slosh_cli.scenario.document import Document, Path
-from slosh_cli.scenario.leaves import FROM_TEXT, Quantity
-from slosh_cli.scenario.schema import Scenario, TankScenario
+from slosh_cli.scenario.base import Path
+from slosh_cli.scenario.document import Document
+from slosh_cli.scenario.leaves import Quantity
 from slosh_cli.scenario.schema_tank import TankBase
-from slosh_cli.scenario.tree import leaves_of
+from slosh_cli.scenario.tree import spot_of
 from slosh_cli.scenario.units import plain, shown
 
-R = TypeVar("R", Scenario, TankScenario)
+_T = TypeVar("_T", bound=TankBase)
 
-USERS: Final = ("modal",)
+_USERS: Final = ("modal",)
 """Models of the liquid that use slosh coefficients."""
 _WITHOUT_EFFECT: Final = frozenset({"bottom_height", "liquid", "coefficients", "modes", "baffles"})
 """Keys of a tank on which its slosh modes do not depend; of `liquid` the density does tell."""
@@ -31,23 +31,22 @@ class OutlivedCoefficientsError(ScenarioError):
     """A tank was changed, but not the slosh coefficients given for it, and the liquid's model uses them."""
 
 
-def with_own_coefficients(scenario: R, document: Document, before: TankBase | None, file: str) -> R:
-    """`scenario` with slosh coefficients that belong to its tank.
+def with_own_coefficients(tank: _T, document: Document, before: TankBase | None, file: str) -> _T:
+    """`tank` with slosh coefficients that belong to it after the overrides of `document`.
 
-    `before` is the tank that given coefficients were given for, None where that is not known. Coefficients that a
-    changed tank has outlived are refused where the liquid's model uses them (OutlivedCoefficientsError); elsewhere
-    `computed` takes their place, so that no later change brings them back.
+    `before` is the tank that given coefficients were given for, None where it is the one of `document` ahead of its
+    overrides. Coefficients that a changed tank has outlived are refused where the liquid's model uses them
+    (OutlivedCoefficientsError); elsewhere `computed` takes their place, so that no later change brings them back.
     """
-    tank = scenario.tank
     if isinstance(tank.coefficients, str) or document.origin(("tank", "coefficients")).override:
-        return scenario
+        return tank
+    before = before or _tank_of_file(document, tank)
     changed = next(_changes(before, tank, document), None)
     if changed is None:
-        return scenario
-    if tank.liquid.model in USERS:
+        return tank
+    if tank.liquid.model in _USERS:
         raise OutlivedCoefficientsError(file, [_problem(changed, before, tank, document)])
-    computed = tank.model_copy(update={"coefficients": "computed"})
-    return scenario.model_copy(update={"tank": computed})
+    return tank.model_copy(update={"coefficients": "computed"})
 
 
 def shapes_modes(key: str) -> bool:
@@ -58,13 +57,13 @@ def shapes_modes(key: str) -> bool:
     return rest in (["liquid", "density"], ["liquid"]) or rest[0] not in _WITHOUT_EFFECT
 
 
-def tank_of_file(document: Document, tank: TankBase) -> TankBase | None:
+def _tank_of_file(document: Document, tank: TankBase) -> TankBase | None:
     """The tank as the file has it before any override; None where it is no sound tank of the shape of `tank`."""
     original = document.original.get("tank") if isinstance(document.original, dict) else None
     if not isinstance(original, dict) or original.get("shape") != getattr(tank, "shape", None):
         return None
     try:
-        return type(tank).model_validate(original, context=FROM_TEXT)
+        return type(tank).from_text(original)
     except ValidationError:
         return None
 
@@ -105,7 +104,7 @@ def _problem(path: Path, before: TankBase | None, tank: TankBase, document: Docu
 
 def _words(tank: TankBase, path: Path) -> str:
     value, part = _value(tank, path), type(tank.liquid) if len(path) > 2 else type(tank)
-    leaf = dict(leaves_of(part))[str(path[-1])]
+    leaf = spot_of(part, str(path[-1])).leaf
     if isinstance(leaf, Quantity):
         return f"`{shown(value)} {leaf.unit}`"
     return plain(value)
