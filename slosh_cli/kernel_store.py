@@ -24,6 +24,8 @@ from typing import Any, Final
 
 PARTS: Final = ("tank", "wagon", "track", "solver")
 """Packages with kernels, and with the constants and types that kernels use."""
+_MODULES: Final = ("compiled", "kernel_store", "arrays", "blocks", "method", "vectors")
+"""Modules beside them that decide about machine code."""
 
 _OWN: Final = re.compile(r"[0-9a-f]{16}(-\d+)?")
 _UNUSED_DAYS: Final = 60.0
@@ -32,7 +34,7 @@ _CHECKSUM: Final = hashlib.sha256().digest_size
 
 def source_files(root: Path) -> list[Path]:
     """Every file that a kernel of the package at `root` can be made from."""
-    own = [root / "compiled.py", root / "kernel_store.py"]
+    own = [root / f"{name}.py" for name in _MODULES]
     return own + [file for part in PARTS for file in sorted((root / part).rglob("*.py"))]
 
 
