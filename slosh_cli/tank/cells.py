@@ -100,8 +100,7 @@ class CellLiquid(Block):
         paid_over = max(step, self.last_step)
         force = sums[0] / step + self.left_force / paid_over - weight * pitch
         moment = sums[1] / step + self.left_moment / paid_over
-        self.following = 0.0
-        self.held_force, self.held_moment = force, moment
+        self.following, self.held_force, self.held_moment = 0.0, force, moment
         if heaviness > _LOOSE:
             change = (force - self.start_force) * self.by_force + (moment - self.start_moment) * self.by_moment
             centre_before = ride.acceleration[START] + centre * ride.pitch_acceleration[START]
@@ -198,8 +197,7 @@ class CellLiquid(Block):
         liquid, cells = self.shallow, self.start
         if stage == END:
             cells = self.end
-        speed = ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
-        pitch = ride.pitch[stage]
+        pitch, speed = ride.pitch[stage], ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
         kinetic, potential = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
         kinetic += speed * _momentum_in_tank(liquid, cells) + 0.5 * liquid.mass * speed * speed
         tilt = 0.5 * liquid.mass * liquid.gravity * liquid.centre_height * pitch
