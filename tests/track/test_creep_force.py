@@ -8,7 +8,7 @@ import pytest
 
 from slosh_cli.scenario import Contact
 from slosh_cli.scenario.schema_run import ADHESIONS, coulomb_adhesion
-from slosh_cli.track.contact import contact_model, creep_force
+from slosh_cli.track.contact import contact_model
 from slosh_cli.track.hertz import hertz_contact
 
 PARAMETERS = {
@@ -41,7 +41,7 @@ def polach(rail, N, slip, speed, power=2):
 
 
 def force(rail, N, slip, speed):
-    return creep_force(CONTACTS[rail], N, slip, speed)[0]
+    return CONTACTS[rail].creep_force(N, slip, speed)[0]
 
 
 @pytest.mark.parametrize("rail", PARAMETERS)
@@ -66,7 +66,7 @@ def test_only_a_wet_rail_tells_the_square_from_the_misprint():
 @pytest.mark.parametrize("rail", PARAMETERS)
 def test_derivatives_are_those_of_the_force(rail):
     for N, slip, speed in product(LOADS, SLIPS, SPEEDS):
-        _, by_normal, by_slip, by_speed = creep_force(CONTACTS[rail], N, slip, speed)
+        _, by_normal, by_slip, by_speed = CONTACTS[rail].creep_force(N, slip, speed)
         scale = force(rail, N, slip, speed)
         for analytic, place in ((by_normal, 0), (by_slip, 1), (by_speed, 2)):
             at = np.array([N, slip, speed])
@@ -79,7 +79,7 @@ def test_derivatives_are_those_of_the_force(rail):
 @pytest.mark.parametrize("rail", PARAMETERS)
 def test_force_is_odd_in_slip(rail):
     for N, slip, speed in product(LOADS, SLIPS, SPEEDS):
-        forward, backward = (creep_force(CONTACTS[rail], N, sign * slip, speed) for sign in (1, -1))
+        forward, backward = (CONTACTS[rail].creep_force(N, sign * slip, speed) for sign in (1, -1))
         assert backward[0] == -forward[0]
         assert backward[1] == -forward[1]  # by normal force
         assert backward[2] == forward[2]  # by slip
@@ -90,7 +90,7 @@ def test_force_is_odd_in_slip(rail):
 @pytest.mark.parametrize("rail", PARAMETERS)
 def test_no_force_without_load(rail):
     for N in (0.0, -1.0, -93e3):
-        assert creep_force(CONTACTS[rail], N, 1.0, 10.0) == (0.0, 0.0, 0.0, 0.0)
+        assert CONTACTS[rail].creep_force(N, 1.0, 10.0) == (0.0, 0.0, 0.0, 0.0)
     assert force(rail, 1e-6, 1.0, 10.0) < 1e-6  # and it goes there continuously
 
 
@@ -137,7 +137,7 @@ def test_peak_falls_with_speed_and_locked_wheels_hold_better_when_slow():
 
 def test_creepage_has_a_floor_of_5_cm_a_second():
     assert force("dry", 93e3, 1e-4, 0.02) == force("dry", 93e3, 1e-4, 0.05)
-    assert creep_force(CONTACTS["dry"], 93e3, 1e-4, 0.02)[3] == 0.0
+    assert CONTACTS["dry"].creep_force(93e3, 1e-4, 0.02)[3] == 0.0
     assert force("dry", 93e3, 1e-4, 0.06) < force("dry", 93e3, 1e-4, 0.05)
 
 
@@ -154,9 +154,9 @@ def test_a_coefficient_of_friction_is_plain_coulomb_friction(mu):
     for N, speed in product((20e3, 93e3), (0.1, 5.0, 44.0)):
         a, b = hertz_contact(0.46, 0.30, 210e9, 0.3).semi_axes(N)
         eps = 210e9 / 2.6 * pi * a * b * 4.12 / (4 * mu * N)
-        locked = creep_force(contact, N, speed, speed)[0]
+        locked = contact.creep_force(N, speed, speed)[0]
         assert locked == pytest.approx(mu * N, rel=3e-6)
         assert 1 - locked / (mu * N) == pytest.approx(4 / (3 * pi * eps**3), rel=1e-2, abs=1e-15)
-        rising = [creep_force(contact, N, slip * speed, speed)[0] for slip in np.geomspace(1e-5, 3.0, 200)]
+        rising = [contact.creep_force(N, slip * speed, speed)[0] for slip in np.geomspace(1e-5, 3.0, 200)]
         assert np.all(np.diff(rising) >= -1e-12 * mu * N)
         assert max(rising) <= mu * N

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.special import ellipe, ellipkm1
 
 from slosh_cli.scenario import Adhesion, Contact
-from slosh_cli.track.contact import contact_model, normal_force
+from slosh_cli.track.contact import contact_model
 from slosh_cli.track.hertz import _elliptic_integrals, hertz_contact
 from slosh_cli.validation.exact.creep import half_space
 
@@ -60,12 +60,12 @@ def test_given_stiffness_replaces_the_computed_one():
 def test_normal_force_is_one_sided_and_stores_two_fifths():
     model = contact_model(steel_contact(stiffness=9e10), 0.46)
     for apart in (0.0, -1e-12, -1e-3, -10.0):
-        assert normal_force(model, apart) == (0.0, 0.0)
+        assert model.normal_force(apart) == (0.0, 0.0)
     for approach in (1e-8, 1e-5, 1e-4, 3e-4):
-        force, slope = normal_force(model, approach)
+        force, slope = model.normal_force(approach)
         assert force == pytest.approx(9e10 * approach**1.5, rel=1e-13)
         step = 1e-4 * approach
-        difference = normal_force(model, approach + step)[0] - normal_force(model, approach - step)[0]
+        difference = model.normal_force(approach + step)[0] - model.normal_force(approach - step)[0]
         assert slope == pytest.approx(difference / (2 * step), rel=1e-7)
-        energy = quad(lambda x: normal_force(model, x)[0], 0.0, approach)[0]
+        energy = quad(lambda x: model.normal_force(x)[0], 0.0, approach)[0]
         assert energy == pytest.approx(0.4 * 9e10 * approach**2.5, rel=1e-7)

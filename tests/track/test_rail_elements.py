@@ -17,7 +17,7 @@ from slosh_cli.track.mem import (
     steady_rows,
     steady_shapes,
 )
-from slosh_cli.track.moving import MATRICES, prepare_rail, rail_ledger, rail_residual
+from slosh_cli.track.moving import MATRICES, prepare_rail, rail_ledger, rail_residual, rail_work
 
 UNEVEN = np.array([6.9, 5.1, -5.1, -6.9])
 DAMPED = {"damping": 4.9e3, "shear_damping": 1.0e3}
@@ -136,12 +136,15 @@ def test_stage_matrix_is_factored_and_condensed_on_the_wheels(uneven, h):
     rail, _, exact = uneven
     V, A, nodes, inside = 44.0, -30.0, rail.nodes, free(rail.nodes)
     M, C, K = exact_matrices(rail, exact, V, A)
-    factors, flexibility = np.zeros((12, nodes)), np.ones((nodes, 2, 4))
-    prepare_rail(rail, h, V, A, np.zeros((len(rail.runs), MATRICES)), factors, flexibility)
+    work = rail_work(rail)
+    work.flexibility[:] = 1.0
+    prepare_rail(rail, work, h, V, A)
     under_wheels = np.zeros((2 * nodes, 4))
     under_wheels[rail.contact, np.arange(4)] = 1.0
     expected = np.linalg.solve(M + h * C + h**2 * K, under_wheels[inside])
+    (flexibility,) = work.flexibility
     computed = flexibility.transpose(1, 0, 2).reshape(-1, 4)
+    assert np.array_equal(work.between, computed[rail.contact])
     assert np.abs(computed[inside] - expected).max() < 1e-9 * np.abs(expected).max()
     assert not np.any(computed[[0, nodes - 1]])
 
