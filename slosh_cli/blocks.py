@@ -11,12 +11,13 @@ from __future__ import annotations
 import ctypes
 import operator
 from functools import cache
-from typing import Any, ClassVar, NamedTuple, Self, cast, dataclass_transform, get_type_hints
+from typing import Any, ClassVar, NamedTuple, Self, cast, dataclass_transform, get_origin, get_type_hints
 
 import numpy as np
 from numba import types
 from numba.core import cgutils
 from numba.core.datamodel import models
+from numba.core.errors import TypingError
 from numba.core.imputils import lower_getattr_generic, lower_setattr_generic
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
@@ -55,15 +56,15 @@ class Block:
         for name, field in plan.fields.items():
             value = given[name]
             if field.hint is float:
-                own["_numbers"][field.place] = value
+                own["_numbers"][field.place] = float(value)
             elif field.hint is int:
-                memory[field.place] = value
+                memory[field.place] = operator.index(value)
             elif field.array is not None:
-                own[name] = array = _fitting(field.array, value)
+                own[name] = array = _fitting(name, field.array, value)
                 words = (array.size, array.itemsize, _address(array), *array.shape, *array.strides)
                 memory[field.place + 2 : field.place + field.words] = words
             else:
-                own[name] = part = _Row(value) if isinstance(value, tuple) else value
+                own[name] = part = _as_part(name, field, value)
                 parts.append(part.kind)
                 memory[field.place] = part.address
         own["kind"] = _kind_of(cls, tuple(parts))
@@ -74,7 +75,10 @@ class Block:
 
     def __setattr__(self, name: str, value: float) -> None:
         place, view = self._number(name)
-        view[place] = value
+        view[place] = value if view.dtype == np.float64 else operator.index(cast(Any, value))
+
+    def __reduce__(self) -> Any:
+        raise TypeError(f"{type(self).__name__} is its address, which no copy and no other process has: use `replaced`")
 
     def _number(self, name: str) -> tuple[int, Any]:
         cls: Any = type(self)
@@ -152,13 +156,26 @@ def _address(array: Any) -> int:
 _BYTE = ctypes.c_char
 
 
-def _fitting(wanted: _Array, value: Any) -> Any:
-    """The value as an array of the kind that is asked for."""
+def _as_part(name: str, field: _Field, value: Any) -> Any:
+    """The value as a block, or as a row of blocks where one is asked for."""
+    row = isinstance(value, tuple)
+    if row != (get_origin(field.hint) is tuple) or not all(
+        isinstance(one, Block) for one in (value if row else [value])
+    ):
+        raise TypeError(f"{name} must be {field.hint}, but is {value!r}")
+    return _Row(value) if row else value
+
+
+def _fitting(name: str, wanted: _Array, value: Any) -> Any:
+    """The value as an array of the kind that is asked for; its numbers are not rounded to fit."""
     array = value
     if not (isinstance(value, np.ndarray) and value.dtype is wanted.dtype and value.flags.carray):
-        array = np.require(value, wanted.dtype, ("C", "A"))
+        array = np.asarray(value)
+        if not np.can_cast(array.dtype, wanted.dtype, "same_kind"):
+            raise TypeError(f"{name} must be of {wanted.dtype}, but is of {array.dtype}")
+        array = np.require(array, wanted.dtype, ("C", "A", "W"))
     if array.ndim != wanted.dimensions:
-        raise TypeError(f"an array of {wanted.dimensions} dimensions is needed, but it has {array.ndim}")
+        raise TypeError(f"{name} must have {wanted.dimensions} dimensions, but has {array.ndim}")
     return array
 
 
@@ -252,6 +269,8 @@ def _get_field(context: Any, builder: Any, block: BlockType, value: Any, name: s
 
 @lower_setattr_generic(BlockType)
 def _set_field(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
+    if not isinstance(sig.args[1], types.Number):
+        raise TypingError(f"{name} is no number: a kernel cannot put another in its place")
     model, pointer = _pointer_to(context, builder, sig.args[0], args[0], name)
     builder.store(model.as_data(builder, args[1]), pointer)
 
