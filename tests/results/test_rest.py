@@ -5,8 +5,8 @@ import json
 import h5py
 import numpy as np
 import pytest
-from slosh_cli.wagon.coordinates import CAR_PITCH
 
+from slosh_cli.method import START
 from slosh_cli.results import rest
 from slosh_cli.results.answers import Shown
 from slosh_cli.results.hdf5 import write_history
@@ -14,6 +14,7 @@ from slosh_cli.results.simulate import simulate
 from slosh_cli.solver.excite import Deceleration, excite
 from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem
+from slosh_cli.wagon.model import CAR_PITCH
 
 ACID = ("tank.coefficients=computed", "tank.modes=3", "tank.liquid.density=1840 kg/m^3", "braking.initial_speed=7 km/h")
 NAME = "push of the liquid after the stop over what holds the wagon"
@@ -59,10 +60,9 @@ def test_frozen_loads_runs_without_a_stop_and_high_stop_speeds_have_no_rest(stop
 def test_modes_swing_as_small_steps_say(shipped, damping):
     """A second method: the same oscillators in steps of 2 ms (velocity Verlet, damping implicit)."""
     scenario = shipped("paper_80", *ACID, f"tank.liquid.damping_ratio={damping}")
-    start = problem(scenario)
-    end = integrate(start).state
-    liquid, pitch = start.model.liquid, end.start.q[CAR_PITCH]
-    place, rate = end.start.slosh.copy(), end.start.slosh_rate.copy()
+    vehicle = integrate(problem(scenario)).train.vehicles[0]
+    liquid, pitch = vehicle.liquid, vehicle.points[START].q[CAR_PITCH]
+    place, rate = liquid.amplitude[START].copy(), liquid.rate[START].copy()
     step, forces = 2e-3, []
     for _ in range(20_000):
         half = rate + 0.5 * step * acceleration(liquid, pitch, place, rate)
@@ -71,7 +71,7 @@ def test_modes_swing_as_small_steps_say(shipped, damping):
             1.0 + 0.5 * step * liquid.damping / liquid.mu
         )
         forces.append(-2.0 * float(liquid.lambda_1 @ acceleration(liquid, pitch, place, rate)))
-    on, back = rest.largest_pushes(start, end)
+    on, back = rest.largest_pushes(vehicle)
     assert on == pytest.approx(max(forces), rel=2e-3)
     assert back == pytest.approx(-min(forces), rel=2e-3)
 

@@ -42,6 +42,7 @@ def liquid_in(
         still_depth=depth,
         loss=losses,
         table=section_table(section, G, slot_speed),
+        columns=1,
     )
 
 
