@@ -1,7 +1,9 @@
 """Deliberate errors in the program, as edits of its source text, and the case that has to turn red.
 
-Most are made in memory: a function is compiled anew from its edited source and put in the place of the true one.
-Errors in kernels that the time loop is made of need a copy of the whole package, compiled on its own.
+Most are made in memory: a function, or a method on its class, is made anew from its edited source and put in the
+place of the true one. An edited kernel is plain Python then, which other kernels refuse to call: none of them can be
+compiled with it and kept. Errors in kernels that the time loop is made of need a copy of the whole package, compiled
+on its own.
 """
 
 from __future__ import annotations
@@ -59,8 +61,8 @@ SABOTAGES: dict[str, Sabotage] = {
     "moving_load_kernel": edit(
         "moving-load",
         *MOVING,
-        "- rail.mass * speed * speed",
-        "+ rail.mass * speed * speed",
+        "- inertia * speed * speed",
+        "+ inertia * speed * speed",
         "kernel",
         copy=True,
     ),
@@ -77,10 +79,10 @@ SABOTAGES: dict[str, Sabotage] = {
         "critical-speed", "solver.setup", "_check_speed", ">= limit", ">= 1e3 * limit", "1.02 of a critical speed"
     ),
     "mem_vs_fem_convection": edit(
-        "mem-vs-fem", *MOVING, "-2.0 * rail.mass * speed", "2.0 * rail.mass * speed", "rail under wheel", copy=True
+        "mem-vs-fem", *MOVING, "-2.0 * inertia * speed", "2.0 * inertia * speed", "rail under wheel", copy=True
     ),
     "mem_vs_fem_acceleration": edit(
-        "mem-vs-fem", *MOVING, "- rail.mass * acceleration", "+ rail.mass * acceleration", "rail under wheel", copy=True
+        "mem-vs-fem", *MOVING, "- inertia * acceleration", "+ inertia * acceleration", "rail under wheel", copy=True
     ),
     "rectangular_tank_lambda_02": edit(
         "rectangular-tank", *MODE, "height_moment - along * slope", "height_moment + along * slope", "lambda_02"
@@ -106,9 +108,11 @@ SABOTAGES: dict[str, Sabotage] = {
     ),
     "circular_cylinder_width": edit("circular-cylinder", *MODE, "along * 2.0 * kappa", "along * kappa", "lambda_1"),
     "kolaei_lambda_1": edit("kolaei", *MODE, "along * 2.0 * kappa", "along * kappa", "consistent with a 2.0 s ramp"),
-    "kolaei_force_sign": edit("kolaei", "tank.modal", "liquid_force", "force -= ", "force += ", "as the step begins"),
+    "kolaei_force_sign": edit(
+        "kolaei", "tank.modal", "ModalLiquid.force", "force -= ", "force += ", "as the step begins"
+    ),
     "hertz_poisson": edit("hertz", "track.hertz", "hertz_contact", "(1 - poisson_ratio**2)", "1.0", "approach"),
-    "hertz_exponent": edit("hertz", "track.contact", "normal_force", "closed * root", "closed", "kernel"),
+    "hertz_exponent": edit("hertz", "track.contact", "ContactModel.normal_force", "closed * root", "closed", "kernel"),
     "hertz_axes": edit(
         "hertz",
         "track.hertz",
@@ -120,7 +124,7 @@ SABOTAGES: dict[str, Sabotage] = {
     "polach_square": edit(
         "polach",
         "track.contact",
-        "creep_force",
+        "ContactModel.creep_force",
         "adhesion / (1.0 + adhesion * adhesion)",
         "adhesion / (1.0 + adhesion * eps)",
         "wet",
@@ -141,7 +145,7 @@ SABOTAGES: dict[str, Sabotage] = {
         "distance",
     ),
     "point_mass_resistance": edit(
-        "point-mass", "wagon.model", "wagon_model", "resistance=0.5 *", "resistance=1.0 *", "distance"
+        "point-mass", "solver.setup", "_vehicle", "resistance=HALF *", "resistance=1.0 *", "distance"
     ),
     "momentum_reaction": edit(
         "momentum",
@@ -152,13 +156,19 @@ SABOTAGES: dict[str, Sabotage] = {
         "momentum lost",
     ),
     "momentum_weight": edit(
-        "momentum", "wagon.model", "wagon_model", "-0.5 * GRAVITY * weight", "-GRAVITY * weight", "weight"
+        "momentum", "wagon.model", "_weight", "-0.5 * STANDARD_GRAVITY * masses", "-STANDARD_GRAVITY * masses", "weight"
     ),
     "energy_brake_sign": edit(
-        "energy", "solver.ledger", "balance", "(spin - v[BOGIE_PITCH", "(spin + v[BOGIE_PITCH", "residual", copy=True
+        "energy", "solver.ledger", "_balance_contacts", "(spin - v[", "(spin + v[", "residual", copy=True
     ),
     "energy_hertz": edit(
-        "energy", "solver.ledger", "balance", "0.4 * model.contact", "0.5 * model.contact", "residual", copy=True
+        "energy",
+        "track.contact",
+        "ContactModel.energy",
+        "0.4 * self.stiffness",
+        "0.5 * self.stiffness",
+        "residual",
+        copy=True,
     ),
     "energy_spin": edit(
         "energy",
@@ -169,14 +179,14 @@ SABOTAGES: dict[str, Sabotage] = {
         "initial kinetic energy",
     ),
     "second_code_half_liquid": edit(
-        "second-code", "solver.setup", "problem", "GRAVITY, HALF)", "GRAVITY, 0.5 * HALF)", "slosh amplitude"
+        "second-code", "solver.setup", "_liquid", "GRAVITY, HALF)", "GRAVITY, 0.5 * HALF)", "slosh amplitude"
     ),
     "figure2_brake_reaction": edit(
         "figure2",
         "solver.contacts",
-        "_inputs",
-        "+= point.torque[i]",
-        "-= point.torque[i]",
+        "_read_inputs",
+        "+= torque[i]",
+        "-= torque[i]",
         "leading wheel",
         copy=True,
     ),

@@ -70,9 +70,12 @@ def sabotaged_copy(sabotage: Sabotage, folder: Path) -> None:
     for one in sabotage.edits:
         file = folder / "slosh_cli" / Path(*one.module.split(".")).with_suffix(".py")
         text = file.read_text(encoding="utf-8")
-        head, body = text.split(f"def {one.function}(", 1)
-        assert one.old in body, f"{one.function} has no {one.old!r} any more"
-        file.write_text(f"{head}def {one.function}({body.replace(one.old, one.new, 1)}", encoding="utf-8")
+        *classes, name = one.function.split(".")
+        begin = 0
+        for word in (*(f"class {part}(" for part in classes), f"def {name}("):
+            begin = text.index(word, begin)
+        assert one.old in text[begin:], f"{one.function} has no {one.old!r} any more"
+        file.write_text(text[:begin] + text[begin:].replace(one.old, one.new, 1), encoding="utf-8")
 
 
 @pytest.mark.slow
