@@ -59,7 +59,7 @@ def error(contestant: str, setting: str) -> float:
 def work(elements: int) -> dict[str, str]:
     """Counts of a stop, as in `bench_floor`."""
     case = scenario(f"track.domain.element_length={scenario().track.domain.length / elements} m")
-    result, unknowns = stopped(case), 2 * problem(case).model.rail.nodes
+    result, unknowns = stopped(case), 2 * problem(case).vehicle.rail.nodes
     tried = result.steps + result.rejected_steps
     singles = result.work["right_hand_sides"] - 4 * result.work["factorisations"]
     return {

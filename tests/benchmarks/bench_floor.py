@@ -20,7 +20,7 @@ DOMAIN = 50.0
 @pytest.mark.parametrize("elements", [100, 200, 400, 800])
 def test_floor(benchmark: Any, elements: int) -> None:
     case = scenario(f"track.domain.element_length={DOMAIN / elements} m", UNRECORDED)
-    rail, d, speed = problem(case).model.rail, 0.02, 22.0
+    rail, d, speed = problem(case).vehicle.rail, 0.02, 22.0
     mass, stretch, drift, bend, _ = np.split(rail.forms, 5, axis=1)
     rows = (
         (rail.mass + d * rail.damping + d**2 * rail.stiffness) * mass

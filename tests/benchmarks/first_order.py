@@ -21,10 +21,11 @@ from reference_code.plain_wagon import PHI, S
 from scipy.integrate import solve_ivp
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.sparse import block_array, csc_array, dia_array, diags_array, eye_array
-from slosh_cli.solver.problem import Control
 
+from slosh_cli.method import START
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver.setup import problem
+from slosh_cli.solver.vehicle import Scales
 
 Array = NDArray[np.float64]
 NEGLIGIBLE = 1e-4
@@ -109,14 +110,14 @@ def _decaying_inverse(mass: csc_array) -> csc_array:
     return csc_array(np.where(np.abs(inverse) > NEGLIGIBLE * np.outer(size, size), inverse, 0.0))
 
 
-def allowances(control: Control, size: int, rail: int, sag: float) -> Array:
+def allowances(scales: Scales, size: int, rail: int, sag: float) -> Array:
     """Scales of the state's parts for absolute tolerances: the program's own, and its share of the rail's sag (m)."""
-    share = control.speed_scale[1] / control.place_scale[1]  # 1/s, from a place's scale to its rate's
-    places = np.where(np.isfinite(control.place_scale), control.place_scale, control.speed_scale * 1.0)
+    share = scales.speed[1] / scales.place[1]  # 1/s, from a place's scale to its rate's
+    places = np.where(np.isfinite(scales.place), scales.place, scales.speed * 1.0)
     modes = size - places.size
-    slosh = np.full(modes, control.slosh_scale)
+    slosh = np.full(modes, scales.slosh)
     deflection = np.full(rail, 32.0 * sag)
-    return np.concatenate([places, slosh, control.speed_scale, slosh, deflection, deflection * share])
+    return np.concatenate([places, slosh, scales.speed, slosh, deflection, deflection * share])
 
 
 USUAL, TUNED = "usual", "tuned"
@@ -125,9 +126,9 @@ USUAL, TUNED = "usual", "tuned"
 def _options(equations: FirstOrder, case: Scenario, use: str, tolerance: float) -> dict[str, object]:
     if use == USUAL:
         return {"rtol": tolerance, "atol": 1e-3 * tolerance}
-    stop = problem(case)
-    sag = float(np.abs(stop.start.rail).max())
-    scales = allowances(stop.model.control, equations.system.wagon.size, equations.system.rail.size, sag)
+    vehicle = problem(case).vehicle
+    sag = float(np.abs(vehicle.points[START].rail).max())
+    scales = allowances(vehicle.scales, equations.system.wagon.size, equations.system.rail.size, sag)
     return {"rtol": 1e-3 * tolerance, "atol": tolerance * scales}
 
 

@@ -69,8 +69,9 @@ def accuracy(result: Result, element_lengths: list[float], finest: float) -> dic
 
 def moving_accuracy(case: Scenario, finer: Scenario) -> float:
     """The same measure for the moving rail: steady shapes under unit loads on the stop's mesh and a finer one."""
+    from slosh_cli.method import START
     from slosh_cli.solver.setup import problem
 
-    models = [problem(one) for one in (case, finer)]
-    coarse, fine = (model.start.rail[model.model.rail.contact] for model in models)
+    vehicles = [problem(one).vehicle for one in (case, finer)]
+    coarse, fine = (vehicle.points[START].rail[vehicle.rail.contact] for vehicle in vehicles)
     return float(np.abs(coarse - fine).max() / np.abs(fine).max())
