@@ -20,7 +20,7 @@ KINDS = get_args(Liquid)
 CONTRACT = {name: value for name, value in vars(FrozenLiquid).items() if isinstance(value, CPUDispatcher)}
 NAMES = {
     "expect", "predict", "inertia", "push", "follow", "error",
-    "carry", "energy", "highest", "record", "taken", "accept",
+    "carry", "energy", "momentum", "highest", "record", "taken", "accept",
 }  # fmt: skip
 STEP, IMPLICIT = 0.02, 0.006
 MODES = [SloshMode(1.9, 900.0, 1500.0, 1100.0, 0.02), SloshMode(5.5, -80.0, 60.0, 150.0, 0.01)]
@@ -52,7 +52,7 @@ def answers(liquid, ride, row):
     """All that a liquid tells in a step of a moving tank, but for what it gets ready."""
     liquid.predict(START, STEP, 0.0, IMPLICIT)
     uu, up, pp = liquid.inertia(IMPLICIT)
-    force, moment = liquid.push(BASE, IMPLICIT, 0.01)
+    force, moment = liquid.push(BASE, IMPLICIT, 0.01, 0.3)
     liquid.follow(END, BASE, IMPLICIT, 0.01, -1.5, 0.2)
     size, by_force, by_moment = liquid.error(STEP, IMPLICIT, 0.1, 1e-3, 1e-2)
     missed = liquid.carry(ride, STEP, 1.0)
@@ -61,7 +61,7 @@ def answers(liquid, ride, row):
     liquid.accept(STEP)
     return (
         uu, up, pp, force, moment, size, by_force, by_moment, missed, kinetic, potential, loss,
-        liquid.highest(), liquid.taken(),
+        liquid.highest(), liquid.taken(), liquid.momentum(ride, END),
     )  # fmt: skip
 
 
@@ -71,11 +71,11 @@ def make_ready(liquid, ride):
 
 
 @kernel
-def followed(liquid, pitch, acceleration, turning):
+def followed(liquid, pitch, pull, acceleration, turning):
     """Force and moment on the tank by the contract: push less inertia times accelerations; then the liquid follows."""
     uu, up, pp = liquid.inertia(IMPLICIT)
-    force, moment = liquid.push(BASE, IMPLICIT, pitch)
-    liquid.follow(END, BASE, IMPLICIT, pitch, acceleration, turning)
+    force, moment = liquid.push(BASE, IMPLICIT, pitch, pull)
+    liquid.follow(END, BASE, IMPLICIT, pitch, acceleration - pull, turning)
     return force - uu * acceleration - up * turning, moment - up * acceleration - pp * turning
 
 
@@ -114,18 +114,18 @@ def test_a_kind_records_as_many_numbers_as_it_says(liquid):
 def test_modes_that_carry_nothing_are_a_frozen_load(modes):
     liquid, ride = modal_liquid(modes, 9.81, 0.5), moving_ride()
     told = [answers(one, ride, np.zeros(4)) for one in (liquid, FrozenLiquid.blank())]
-    assert told[0] == told[1] == 14 * (0.0,)
+    assert told[0] == told[1] == 15 * (0.0,)
     assert make_ready(liquid, ride) == make_ready(FrozenLiquid.blank(), ride) == (True, 0.0, 0.0)
 
 
 def test_a_frozen_load_answers_nothing_and_records_nothing():
     assert FrozenLiquid.blank().recorded == 0
-    assert followed(FrozenLiquid.blank(), 0.01, -1.5, 0.2) == (0.0, 0.0)
+    assert followed(FrozenLiquid.blank(), 0.01, 0.4, -1.5, 0.2) == (0.0, 0.0)
 
 
 def test_push_and_inertia_give_the_force_of_the_modes_that_follow():
     liquid = modes_in_motion()
-    found = followed(liquid, 0.01, -1.5, 0.2)
+    found = followed(liquid, 0.01, 0.4, -1.5, 0.2)
     assert found == pytest.approx(liquid.force(END), rel=1e-12)
     assert abs(found[0]) > 100.0
 
@@ -133,7 +133,7 @@ def test_push_and_inertia_give_the_force_of_the_modes_that_follow():
 def test_the_modes_equations_hold_where_they_follow():
     """mu a + c v + k x + lambda_1 u'' + lambda_02 pitch'' = g lambda_1 pitch, the pitch that of the stage's end."""
     liquid, pitch, turning = modes_in_motion(), 0.01, 0.2
-    followed(liquid, pitch, -1.5, turning)
+    followed(liquid, pitch, 0.4, -1.1, turning)
     place, rate, second = (values[END] for values in (liquid.amplitude, liquid.rate, liquid.second))
     left = liquid.mu * second + liquid.damping * rate + liquid.stiffness * place
     right = liquid.pitch_weight * (pitch + IMPLICIT**2 * turning) - liquid.lambda_1 * -1.5 - liquid.lambda_02 * turning
