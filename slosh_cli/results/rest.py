@@ -19,7 +19,7 @@ from slosh_cli.solver import excite_kernels
 from slosh_cli.solver.setup import HALF, Problem
 from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
-from slosh_cli.tank.liquid import FrozenLiquid
+from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.shallow import WORK_ROWS
 from slosh_cli.wagon.model import CAR_PITCH
@@ -42,7 +42,7 @@ REST_SPEED = 0.1
 
 def rest_checks(scenario: Scenario, stop: Problem) -> tuple[Check, ...]:
     """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
-    if isinstance(stop.vehicle.liquid, FrozenLiquid) or scenario.braking.stop_speed > REST_SPEED:
+    if type(stop.vehicle.liquid) is Slosh or scenario.braking.stop_speed > REST_SPEED:
         return ()
     (on, back), held = largest_pushes(stop.vehicle), holding_force(scenario, stop.static_loads)
     push, way = max(on, back), "on" if on > held else "back"

@@ -228,7 +228,7 @@ def _channels(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str, V
 def _load_channels(
     scenario: Scenario, vehicle: Vehicle, recorded: Matrix, place: Matrix, acceleration: Matrix
 ) -> dict[str, Vector]:
-    """The load's force and moment on the whole tank (model section 3), slosh amplitudes and the surface.
+    """The load's force and moment on the whole tank (theory section 3), slosh amplitudes and the surface.
 
     The force is the derivative of the liquid's momentum, the frozen part included.
     """

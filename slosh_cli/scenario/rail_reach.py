@@ -1,8 +1,8 @@
 """How much of the rail has to be computed, and how finely: lengths that follow from the track itself.
 
 The stretch of rail that moves with the wagon ends in supports. Such an end at distance d from a wheel acts like a
-mirrored load at 2 d: the deflection under the wheel is wrong by the share of the wheel's own wave that comes back. Of
-the steady wave's equation `EI p^4 + lam V p^3 - (k_sm - m V^2) p^2 - alpha V p + k = 0` (model section 6) the root that
+mirrored load at 2 d: the deflection under the wheel is wrong by the share of the wheel's own wave that comes back. The
+steady wave's equation is `EI p^4 + lam V p^3 - (k_sm - m V^2) p^2 - alpha V p + k = 0` (theory section 6). Its root that
 fades most slowly decides on either side of the wheel; the wave goes out on one and comes back on the other.
 """
 
@@ -95,7 +95,7 @@ def fading_length(rail: Rail, foundation: Foundation) -> float:
 
 
 def critical_speed(rail: Rail, foundation: Foundation) -> float:
-    """Lowest speed (m/s) at which a moving load meets a free wave of the undamped track (model section 6)."""
+    """Lowest speed (m/s) at which a moving load meets a free wave of the undamped track (theory section 6)."""
     bending = rail.youngs_modulus * rail.second_moment
     return math.sqrt(
         (foundation.shear_stiffness + 2.0 * math.sqrt(foundation.stiffness * bending)) / rail.mass_per_length

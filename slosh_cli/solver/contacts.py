@@ -70,7 +70,7 @@ def _body_acceleration(scratch, row):
 def _read_gains(vehicle, step):
     """How creep forces and transmitted torques change with wheel load, acceleration along the track and spin gap.
 
-    A creep force changes by `load_gain dN + speed_gain da + spin_gain gap`, its spin's own change eliminated (model
+    A creep force changes by `load_gain dN + speed_gain da + spin_gain gap`, its spin's own change eliminated (theory
     section 7); with it the moment on the bogie, by `turn_gain` times that and `turn_by_gap` times the gap.
     """
     wagon, scratch, locked = vehicle.wagon, vehicle.scratch, vehicle.locked

@@ -14,7 +14,7 @@ from slosh_cli.wagon.model import CAR_PITCH, FIRST_BOGIE
 SHORTEST_STEP = 1e-9
 """Steps do not go below this, s."""
 _LARGEST_PITCH = 0.1
-"""Small-angle kinematics say nothing beyond this pitch, rad (model section 9)."""
+"""Small-angle kinematics say nothing beyond this pitch, rad (theory section 9)."""
 
 
 @inner_kernel

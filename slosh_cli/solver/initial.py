@@ -1,4 +1,4 @@
-"""The state at t = 0: the wagon at rest on its springs, the rail in its steady shape at V0 (model section 6)."""
+"""The state at t = 0: the wagon at rest on its springs, the rail in its steady shape at V0 (theory section 6)."""
 
 from __future__ import annotations
 

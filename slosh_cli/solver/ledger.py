@@ -1,4 +1,4 @@
-"""The energy ledger: what there is, and the power with which it comes and goes (model section 9)."""
+"""The energy ledger: what there is, and the power with which it comes and goes (theory section 9)."""
 
 from __future__ import annotations
 

@@ -14,10 +14,10 @@ from slosh_cli.scenario.rail_reach import computed_lengths
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.train import Control, Train, new_train
-from slosh_cli.solver.vehicle import Liquid, Point, Scales, Vehicle, new_vehicle
+from slosh_cli.solver.vehicle import Point, Scales, Vehicle, new_vehicle
 from slosh_cli.tank.cells import CellLiquid, cell_liquid
 from slosh_cli.tank.coefficients import slosh_modes
-from slosh_cli.tank.liquid import FrozenLiquid
+from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.load import FrozenLoad, frozen_load
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 from slosh_cli.tank.still import shallow_liquid
@@ -104,12 +104,12 @@ def _vehicle(scenario: Scenario) -> Vehicle:
     )
 
 
-def _liquid(scenario: Scenario, wagon: WagonModel) -> Liquid:
+def _liquid(scenario: Scenario, wagon: WagonModel) -> Slosh:
     """The moving part of the load, at rest."""
     if scenario.tank.liquid.model == "shallow-water":
         return _cells(scenario, wagon)
     modes = slosh_modes(scenario.tank)
-    return modal_liquid(modes, STANDARD_GRAVITY, HALF) if modes else FrozenLiquid.blank()
+    return modal_liquid(modes, STANDARD_GRAVITY, HALF) if modes else Slosh.blank()
 
 
 def _cells(scenario: Scenario, wagon: WagonModel) -> CellLiquid:
@@ -146,7 +146,7 @@ def _computed_track(scenario: Scenario) -> Track:
     return track.model_copy(update={"domain": track.domain.model_copy(update=domain)})
 
 
-def _check_mass_matrix(wagon: WagonModel, liquid: Liquid) -> None:
+def _check_mass_matrix(wagon: WagonModel, liquid: Slosh) -> None:
     """Refuse slosh coefficients whose kinetic energy could be negative."""
     if not isinstance(liquid, ModalLiquid):
         return
@@ -172,7 +172,7 @@ def _check_speed(scenario: Scenario, rail: RailModel) -> None:
         )
 
 
-def _scales(scenario: Scenario, wagon: WagonModel, liquid: Liquid, start: Point) -> Scales:
+def _scales(scenario: Scenario, wagon: WagonModel, liquid: Slosh, start: Point) -> Scales:
     """Scales of velocities and places from V0 and from how far the wagon sags at the `start` under its weight."""
     speeds = np.full(wagon.coordinates, scenario.braking.initial_speed)
     speeds[wagon.first_spin :] /= wagon.wheel_radius

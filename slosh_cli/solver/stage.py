@@ -196,7 +196,7 @@ def _close_pass(vehicle, point, step):
 def _stage_mismatch(rail, scratch, step, speed, acceleration):
     """Bound on what a pass leaves open, over its change, because the factors were made for another V and A.
 
-    For a wave of number p the difference is `2 m d dV p + ...`, the matrix `m + d^2 (k + T p^2 + EI p^4)` (model
+    For a wave of number p the difference is `2 m d dV p + ...`, the matrix `m + d^2 (k + T p^2 + EI p^4)` (theory
     section 6). With `s = m + d^2 (k - T^2/(4 EI))` the quotient is largest at `p^4 = s/(3 d^2 EI)`, that of the terms
     with p^2 at `p^4 = s/(d^2 EI)`.
     """

@@ -10,9 +10,7 @@ import numpy as np
 
 from slosh_cli.arrays import Flags, Integers, Matrix, Vector
 from slosh_cli.blocks import Block
-from slosh_cli.tank.cells import CellLiquid
-from slosh_cli.tank.liquid import FrozenLiquid, Ride
-from slosh_cli.tank.modal import ModalLiquid
+from slosh_cli.tank.liquid import Ride, Slosh
 from slosh_cli.track.contact import ContactModel
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel
@@ -20,8 +18,6 @@ from slosh_cli.track.moving import RailWork, rail_work
 from slosh_cli.wagon.brake import StepBrake
 from slosh_cli.wagon.model import WagonModel
 
-Liquid = FrozenLiquid | ModalLiquid | CellLiquid
-"""Kinds of liquid."""
 BRAKE, CREEP, SUSPENSION, FOUNDATION, RESISTANCE, SLOSH_DAMPING, GRADIENT, SLOPE, LOSSES = range(9)
 """Places in a point's powers and in the work done so far, and their number: how energy leaves or enters (`ledger`)."""
 
@@ -141,7 +137,7 @@ class Vehicle(Block):
     """
 
     wagon: WagonModel
-    liquid: Liquid
+    liquid: Slosh
     rail: RailModel
     contact: ContactModel
     line: Line
@@ -192,7 +188,7 @@ def _account(wheels: int) -> Account:
 
 def new_vehicle(
     wagon: WagonModel,
-    liquid: Liquid,
+    liquid: Slosh,
     rail: RailModel,
     contact: ContactModel,
     line: Line,

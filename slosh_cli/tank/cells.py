@@ -26,6 +26,7 @@ from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import END, GAMMA, MIDDLE, START
+from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.section_table import section_at
 from slosh_cli.tank.shallow import WORK_ROWS, ShallowLiquid, liquid_energy_in_tank, liquid_evolve
 from slosh_cli.tank.still import CellColumns
@@ -45,7 +46,7 @@ class Cells(Block):
     depth: Vector
 
 
-class CellLiquid(Block):
+class CellLiquid(Slosh):
     """The shallow-water liquid of half a tank in a wagon. A liquid by `liquid`'s contract.
 
     `start`, `end` are its cells at a step's ends; `work` (WORK_ROWS, cells + 1) and `sums` (4,) are scratch. The
@@ -82,7 +83,6 @@ class CellLiquid(Block):
     start_moment: float
     end_force: float
     end_moment: float
-    recorded: int
 
     @inner_kernel
     def expect(self, ride, step):
@@ -118,10 +118,6 @@ class CellLiquid(Block):
         return True, change_of_force, change_of_moment
 
     @inner_kernel
-    def predict(self, more, weight, weight_more, implicit):
-        """Cells go beside the stages."""
-
-    @inner_kernel
     def inertia(self, implicit):
         """The added mass, at the still liquid's centre; without a step (`implicit` 0) there is none."""
         following = self.following if implicit > 0.0 else 0.0
@@ -135,10 +131,6 @@ class CellLiquid(Block):
             led = self.following * pull
             return self.held_force + led, self.held_moment + self.shallow.centre_height * led
         return self.start_force, self.start_moment
-
-    @inner_kernel
-    def follow(self, stage, base, implicit, pitch, acceleration, pitch_acceleration):
-        """Cells go beside the stages."""
 
     @inner_kernel
     def error(self, step, implicit, speed, pitch, pitch_rate):
@@ -181,7 +173,7 @@ class CellLiquid(Block):
         self.owed_moment = self.left_moment + sums[1] - step * self.moment
         kinetic_end, potential_end = liquid_energy_in_tank(liquid, area, flow, depth)
         self.loss = sums[2] - (kinetic_end + potential_end - kinetic - potential)
-        # the walls' pressures turn the tank about the still centre, the liquid feels nothing of it (model section 10)
+        # the walls' pressures turn the tank about the still centre, the liquid feels nothing of it (theory section 10)
         mean_pitch, turn = 0.5 * (pitch[START] + pitch[END]), pitch[END] - pitch[START]
         weights, weights_end = _weights_moment(liquid, self.start), _weights_moment(liquid, cells)
         centred = self.force + liquid.mass * gravity * mean_pitch

@@ -13,7 +13,7 @@ from slosh_cli.tank.section import liquid_depth, section_of
 
 @dataclass(frozen=True)
 class SloshMode:
-    """One longitudinal slosh mode of a whole tank (model.md, sections 3 and 4).
+    """One longitudinal slosh mode of a whole tank (theory sections 3 and 4).
 
     `frequency` rad/s; `lambda_1` kg couples the surface to the longitudinal displacement of the tank's bottom
     centre, `lambda_02` kg m to its pitch; `mu` kg is the modal mass; `damping_ratio` is relative to critical.

@@ -10,7 +10,7 @@ from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.longitudinal import mode_number
 
 LARGEST_MASS_FRACTION = 8.0 / math.pi**2
-"""Bound of the first mode's share of the liquid in any tank with flat ends (model.md, section 4)."""
+"""Bound of the first mode's share of the liquid in any tank with flat ends (theory section 4)."""
 
 ROUNDING = 1e-6
 """What figures with few digits may exceed the bound by."""

@@ -1,4 +1,4 @@
-"""The plane eigenproblem of sloshing over a wetted half section (model.md, section 4), by quadratic elements.
+"""The plane eigenproblem of sloshing over a wetted half section (theory section 4), by quadratic elements.
 
 `(d_yy + d_zz - k^2) phi = 0` in the liquid, `d phi/dn = 0` on the wall, `d phi/dz = kappa phi` on the free
 surface with `kappa = omega^2/g`. In the weak form, for all v,

@@ -1,8 +1,8 @@
-"""What the time integrator asks of a liquid: the contract of its kinds, and a frozen load, which does nothing.
+"""What the time integrator asks of a liquid: the contract of its kinds, which a frozen load keeps by doing nothing.
 
-A kind of liquid is a block of its constants, its own state and work space, with the kernels of `FrozenLiquid`; a load's
-frozen part is the wagon's. Every force is that of what the program models of the tank: half of it, on one rail. The
-kinds are `FrozenLiquid`, `modal.ModalLiquid` and `cells.CellLiquid`.
+A kind of liquid is a block of its constants, its own state and work space. It is a `Slosh` with kernels of its own; the
+load's frozen part is the wagon's. Every force is that of what the program models of the tank: half of it, on one rail.
+The kinds are `modal.ModalLiquid` and `cells.CellLiquid`.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ class Ride(Block):
     pitch_acceleration: Vector
 
 
-class FrozenLiquid(Block):
-    """No liquid beside the frozen load.
+class Slosh(Block):
+    """The motion of a load beside its frozen part: none.
 
     `recorded` is how many numbers `record` writes.
     """

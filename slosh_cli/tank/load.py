@@ -1,4 +1,4 @@
-"""The load at rest: mass, centre and pitch inertia of the frozen prism (model.md, section 3)."""
+"""The load at rest: mass, centre and pitch inertia of the frozen prism (theory section 3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Longitudinal slosh modes of a prismatic tank with flat ends, from its cross-section (model.md, section 4).
+"""Longitudinal slosh modes of a prismatic tank with flat ends, from its cross-section (theory section 4).
 
 With `k = n pi / L`, n odd, every mode is a plane problem over the section. Its potential is scaled so that
 the surface shape `f = d phi/dz` has the width-mean 1: an amplitude in metres is then the mean rise at the end

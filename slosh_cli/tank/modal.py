@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
-from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel, kernel
 from slosh_cli.method import (
     BASE,
@@ -23,10 +22,11 @@ from slosh_cli.method import (
     step_extremes,
 )
 from slosh_cli.tank.coefficients import SloshMode
+from slosh_cli.tank.liquid import Slosh
 from slosh_cli.vectors import copy
 
 
-class ModalLiquid(Block):
+class ModalLiquid(Slosh):
     """Slosh modes of half a tank (or a whole one); every vector (modes,), SI units. A liquid by `liquid`'s contract.
 
     `lambda_1` kg and `lambda_02` kg m couple a mode to the bottom centre's displacement and the tank's pitch,
@@ -45,12 +45,6 @@ class ModalLiquid(Block):
     amplitude: Matrix
     rate: Matrix
     second: Matrix
-    recorded: int
-
-    @inner_kernel
-    def expect(self, ride, step):
-        """Nothing changes at the start."""
-        return True, 0.0, 0.0
 
     @inner_kernel
     def predict(self, more, weight, weight_more, implicit):
@@ -126,11 +120,6 @@ class ModalLiquid(Block):
         return size, force, moment
 
     @inner_kernel
-    def carry(self, ride, step, allowed):
-        """The modes went with the stages."""
-        return 0.0
-
-    @inner_kernel
     def energy(self, ride, stage):
         """The modes' energies, their coupling to the tank included."""
         kinetic = potential = loss = 0.0
@@ -181,11 +170,6 @@ class ModalLiquid(Block):
         amplitude, rate, second = self.amplitude, self.rate, self.second
         hermites(amplitude[START], rate[START], amplitude[END], rate[END], cubic, row, first)
         parabolas(second[START], second[MIDDLE], second[END], parabola, row, first + self.mu.size)
-
-    @inner_kernel
-    def taken(self):
-        """Nothing beside the stages' power."""
-        return 0.0
 
     @inner_kernel
     def accept(self, step):

@@ -1,4 +1,4 @@
-"""Shallow-water liquid with a roof and a bottom: Saint-Venant's equations in the tank's frame (model section 10).
+"""Shallow-water liquid with a roof and a bottom: Saint-Venant's equations in the tank's frame (theory section 10).
 
     A_t + Q_x = 0,    Q_t + (Q^2/A + g I1(A))_x = -A a,    a = u_B'' + z_c theta'' - g theta
 

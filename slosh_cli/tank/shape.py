@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class ModeShape:
     """A mode over the whole wetted cross-section, for an amplitude of 1.
 
-    `y`, `z` (nodes,) m and `triangles` (t, 3) cover the section; `potential` (nodes,) is phi of model.md
+    `y`, `z` (nodes,) m and `triangles` (t, 3) cover the section; `potential` (nodes,) is phi of theory
     section 4 in m. `surface_y` (points,) m, from left to right, and `surface_rise` (points,) the surface's
     shape f there, of width-mean 1. Along the tank both go as cos(n pi (x + L/2) / L).
     """

@@ -15,7 +15,7 @@ from slosh_cli.scenario import Contact
 from slosh_cli.track.hertz import hertz_contact
 
 CREEPAGE_SPEED_FLOOR = 0.05
-"""Creepage is slip over the larger of train speed and this, m/s (model section 7)."""
+"""Creepage is slip over the larger of train speed and this, m/s (theory section 7)."""
 
 
 class ContactModel(Block):
@@ -59,7 +59,7 @@ class ContactModel(Block):
         """Longitudinal creep force on the wheel, opposing `slip` (m/s, train speed less circumferential speed).
 
         Returns the force (N, positive rearwards for positive slip) and its derivatives with respect to the normal
-        force, the slip and the train speed. `|creepage| = |slip| / max(|speed|, floor)`; model section 7.
+        force, the slip and the train speed. `|creepage| = |slip| / max(|speed|, floor)`; theory section 7.
         """
         if normal <= 0.0:
             return 0.0, 0.0, 0.0, 0.0

@@ -21,6 +21,6 @@ class Line(Block):
 
     @inner_kernel
     def resisting_force(self, speed):
-        """Running resistance (N) at `speed` (m/s) and its derivative (N s/m); model section 8."""
+        """Running resistance (N) at `speed` (m/s) and its derivative (N s/m); theory section 8."""
         constant, linear, quadratic = self.resistance[0], self.resistance[1], self.resistance[2]
         return constant + speed * (linear + speed * quadratic), linear + 2.0 * speed * quadratic

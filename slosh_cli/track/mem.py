@@ -1,7 +1,7 @@
 """Rail as an Euler-Bernoulli beam on a damped Pasternak foundation, by the moving element method.
 
 The mesh travels with the wagon (`r = x - s(t)`), so the wheels stay on fixed nodes and the motion enters through
-the matrices (model section 6; C. G. Koh et al., "Moving element method for train-track dynamics", Int. J. Numer.
+the matrices (theory section 6; C. G. Koh et al., "Moving element method for train-track dynamics", Int. J. Numer.
 Meth. Engng 56 (2003) 1549-1567). Cubic Hermite elements, nodal unknowns deflection (m, up) and slope (rad).
 """
 
@@ -132,12 +132,12 @@ def rail_model(track: Track, wheels: Vector) -> RailModel:
 
 
 def critical_speed(rail: RailModel) -> float:
-    """Lowest speed (m/s) at which a moving load meets a free wave of the undamped track (model section 6)."""
+    """Lowest speed (m/s) at which a moving load meets a free wave of the undamped track (theory section 6)."""
     return float(np.sqrt((rail.shear_stiffness + 2 * np.sqrt(rail.stiffness * rail.bending_stiffness)) / rail.mass))
 
 
 def steady_rows(rail: RailModel, speed: float) -> Vector:
-    """Rows (r, 12) of the K of model section 6 at constant `speed` (m/s)."""
+    """Rows (r, 12) of the K of theory section 6 at constant `speed` (m/s)."""
     mass, stretch, drift, bend, twist = np.split(rail.forms, FORMS // ENTRIES, axis=1)
     tension = rail.shear_stiffness - rail.mass * speed**2
     return (

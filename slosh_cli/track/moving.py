@@ -1,4 +1,4 @@
-"""Kernels of the moving rail: stage matrix, residual, energy; see `mem` for the matrices (model section 6)."""
+"""Kernels of the moving rail: stage matrix, residual, energy; see `mem` for the matrices (theory section 6)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ STAGE, DAMPING, STIFFNESS, MATRICES = range(0, 4 * ENTRIES, ENTRIES)
 
 @vector_kernel
 def _matrices(rail, step, speed, acceleration, rows):
-    """`M + step C(V) + step^2 K(V, A)`, C(V) and K(V, A) of model section 6 into `rows` (r, 36)."""
+    """`M + step C(V) + step^2 K(V, A)`, C(V) and K(V, A) of theory section 6 into `rows` (r, 36)."""
     forms, inertia, foundation, bending = rail.forms, rail.mass, rail.stiffness, rail.bending_stiffness
     loss, shear_loss = rail.damping, rail.shear_damping
     tension = rail.shear_stiffness - inertia * speed * speed
@@ -131,7 +131,7 @@ def rail_residual(rail, y, rate, second, step, speed, acceleration, rows, residu
 def rail_ledger(rail, y, rate, speed):
     """Kinetic and elastic energy (J) of the rail and the power (W) its foundation takes.
 
-    The material velocity is `y_t - V y_r` (model section 9).
+    The material velocity is `y_t - V y_r` (theory section 9).
     """
     runs, forms = rail.runs, rail.forms
     bending, shear, foundation = rail.bending_stiffness, rail.shear_stiffness, rail.stiffness

@@ -1,4 +1,4 @@
-"""Wheels that lock and turn again: the set-valued brake torque (model section 8).
+"""Wheels that lock and turn again: the set-valued brake torque (theory section 8).
 
 A brake opposes its wheel's rotation with the torque that it can hold. At rest the torque is whatever holds the wheel,
 up to that. Each wheel has a value that is positive until it locks or is released: the speed of its tread while it

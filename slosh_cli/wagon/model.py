@@ -69,7 +69,7 @@ def _unit(index: int) -> Vector:
 
 
 def car_at_height(wagon: Wagon, height: float) -> Vector:
-    """Row of the longitudinal displacement of the car at `height` (m) above the rail head (model section 2)."""
+    """Row of the longitudinal displacement of the car at `height` (m) above the rail head (theory section 2)."""
     pivot_arm = 0.5 * (wagon.traction_height - wagon.wheelset.wheel_radius)
     return (
         _unit(POSITION)
@@ -155,7 +155,7 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
     """Assemble the half wagon; `load` is the whole tank's, `tank_bottom_height` (m) above the rail head.
 
     A load that is not `carried` along x has a motion of its own there: its longitudinal inertia and its weight's part
-    in the car's pitch are then left to the liquid (model section 10).
+    in the car's pitch are then left to the liquid (theory section 10).
     """
     tank_row = car_at_height(wagon, tank_bottom_height)
     mass = _mass_matrix(wagon, tank_row, load, carried)

@@ -1,4 +1,4 @@
-"""How a run can end, and that what it says about it is consistent (model section 8, interface: status)."""
+"""How a run can end, and that what it says about it is consistent (theory section 8, interface: status)."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_time_limit_ends_a_run_where_it_stands(stop):
 
 
 def test_run_at_the_pitch_limit_ends_at_a_tenth_of_a_radian(stop):
-    """Model section 9: small-angle kinematics say nothing beyond."""
+    """Theory section 9: small-angle kinematics say nothing beyond."""
     result = stop("paper_160", "braking.torque=20 kN m")
     assert result.status == "pitch-limit"
     assert result.braking_distance_m is None

@@ -1,4 +1,4 @@
-"""What every run is held to: the energy ledger, the weight, the wheels' speeds (model section 9; acceptance)."""
+"""What every run is held to: the energy ledger, the weight, the wheels' speeds (theory section 9; acceptance)."""
 
 import numpy as np
 import pytest

@@ -31,9 +31,9 @@ def resistance(V):
 
 
 def creepage(force, kalker):
-    """Creepage at which Polach's dry law gives `force` (N) under the static load; eps as in model section 7.
+    """Creepage at which Polach's dry law gives `force` (N) under the static load; eps as in theory section 7.
 
-    The check numbers of model section 7 fix a b at 93 kN; falling friction does not matter at so little slip.
+    The check numbers of theory section 7 fix a b at 93 kN; falling friction does not matter at so little slip.
     """
     N = 9.81 * MASS / 8
     ellipse = 7.0e-3 * 5.3e-3 * (N / 93e3) ** (2 / 3)

@@ -309,7 +309,7 @@ WITHOUT_BOTTOM = (
         "    impulse += 0.5 * step * liquid.mass * liquid.gravity * (start.q[CAR_PITCH] + end.q[CAR_PITCH])\n",
     ),
 )
-"""Takes the bottom's share `- m_l g theta` out of the liquid's force on the tank (model section 10)."""
+"""Takes the bottom's share `- m_l g theta` out of the liquid's force on the tank (theory section 10)."""
 
 
 @pytest.mark.slow

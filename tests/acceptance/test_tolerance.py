@@ -123,7 +123,7 @@ FORK = ("paper_160_solid", "braking.initial_speed=150 km/h")
 
 @pytest.mark.parametrize("torque", [19.6, 20.0])
 def test_either_side_of_a_fork_is_found_at_default_tolerance(stop, torque):
-    """Model section 11: rigid, 150 km/h, dry: between the two the fourth wheel locks and the distance jumps by 54 m."""
+    """Theory section 11: rigid, 150 km/h, dry: between the two a fourth wheel locks, the distance jumps by 54 m."""
     assert abs(deviation(stop, "1e-4", "1e-6", *FORK, f"braking.torque={torque} kN m")) < ASKED
 
 

@@ -94,7 +94,7 @@ def state_of(stop):
 @pytest.mark.parametrize("fall", [1e-4, 0.01, 0.3, 3.0])
 @pytest.mark.parametrize("gap", [-0.2, -1e-3, -3e-6, *NEARNESS[:-2]])
 def test_wheel_about_to_turn_again_turns(held_wheel, gap, fall, first_step):
-    """Held up to the torque and no further (model section 8), also where it enters beyond it."""
+    """Held up to the torque and no further (theory section 8), also where it enters beyond it."""
     stop = held_wheel(gap, fall)
     for steps in range(1, 16):
         start, began = stop.vehicle.points[START], [values.copy() for values in state_of(stop)]

@@ -1,4 +1,4 @@
-"""Gravity along the track acts on every mass: on wagon, frozen load and moving liquid alike (model section 14)."""
+"""Gravity along the track acts on every mass: on wagon, frozen load and moving liquid alike (theory section 8)."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Order and stability of the time integrator on stiff linear systems with known solutions (model section 11)."""
+"""Order and stability of the time integrator on stiff linear systems with known solutions (theory section 11)."""
 
 from itertools import pairwise
 

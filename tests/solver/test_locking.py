@@ -1,4 +1,4 @@
-"""Wheels that lock: a set-valued friction torque, transmitted as `f R`, without chatter (model section 8)."""
+"""Wheels that lock: a set-valued friction torque, transmitted as `f R`, without chatter (theory section 8)."""
 
 import numpy as np
 import pytest
@@ -109,7 +109,7 @@ FORK = ("paper_160_solid", "braking.initial_speed=150 km/h")
 
 
 def test_locked_distances_of_the_fork(stop):
-    """Model section 11: rigid, 150 km/h, dry: 334 m at 19.6 kN m with three wheels locked, 388 m at 20 with four."""
+    """Theory section 11: rigid, 150 km/h, dry: 334 m at 19.6 kN m with three wheels locked, 388 m at 20 with four."""
     short, long = stop(*FORK, "braking.torque=19.6 kN m"), stop(*FORK, "braking.torque=20 kN m")
     assert short.braking_distance_m == pytest.approx(334.0, abs=0.5)
     assert long.braking_distance_m == pytest.approx(388.0, abs=0.5)
@@ -124,7 +124,7 @@ def test_locked_wagon_slides_like_a_block(stop):
     mass = 21.3e3 + 2 * 1.8e3 + 4 * 1.4e3 + 830 * 15.5 * np.pi * 1.5**2 / 2
     V, time = c["speed"][sliding], result.time[sliding]
     assert V[-1] > 1.0
-    # Polach's dry law, fully sliding: creepage 1; the check numbers of model section 7 give the ellipse
+    # Polach's dry law, fully sliding: creepage 1; the check numbers of theory section 7 give the ellipse
     mu = 0.55 * (0.6 * np.exp(-0.6 * V) + 0.4)
     deceleration = (851 + 13.5 * V + 1.244 * V**2) / mass
     for wheel in WHEELS:

@@ -1,4 +1,4 @@
-"""What the rail tests compare with: exact element integrals, closed forms and Fourier integrals (model section 6).
+"""What the rail tests compare with: exact element integrals, closed forms and Fourier integrals (theory section 6).
 
 Nothing here uses the formulas under test; the exact solutions are those that `slosh validate` compares with.
 """

@@ -1,4 +1,4 @@
-"""Polach's creep force: the formula of model section 7, its derivatives, and what is known of its behaviour."""
+"""Polach's creep force: the formula of theory section 7, its derivatives, and what is known of its behaviour."""
 
 from itertools import product
 from math import atan, exp, pi
@@ -29,7 +29,7 @@ CONTACTS = {rail: contact_of(ADHESIONS[rail]) for rail in PARAMETERS}
 
 
 def polach(rail, N, slip, speed, power=2):
-    """The force as model section 7 writes it; `power=1` is the known misprint `kA eps^2` for `(kA eps)^2`."""
+    """The force as theory section 7 writes it; `power=1` is the known misprint `kA eps^2` for `(kA eps)^2`."""
     p = PARAMETERS[rail]
     a, b = hertz_contact(0.46, 0.30, 210e9, 0.3).semi_axes(N)
     G = 210e9 / (2 * (1 + 0.3))

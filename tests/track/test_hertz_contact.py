@@ -1,4 +1,4 @@
-"""Hertz contact against the elastic half space itself, and the check numbers of model section 7."""
+"""Hertz contact against the elastic half space itself, and the check numbers of theory section 7."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def steel_contact(**changes):
 
 
 def test_check_numbers():
-    """Model section 7: R 0.46 m, crown 0.30 m, 210 GPa, 0.3 -> C_H = 9.413e10, a = 7.0 mm, b = 5.3 mm at 93 kN."""
+    """Theory section 7: R 0.46 m, crown 0.30 m, 210 GPa, 0.3 -> C_H = 9.413e10, a = 7.0 mm, b = 5.3 mm at 93 kN."""
     hertz = hertz_contact(0.46, 0.30, 210e9, 0.3)
     assert hertz.stiffness == pytest.approx(9.413e10, rel=1e-4)
     assert hertz.semi_axes(93e3) == (pytest.approx(7.0e-3, abs=5e-5), pytest.approx(5.3e-3, abs=5e-5))

@@ -1,4 +1,4 @@
-"""Rail under moving loads: closed form, damping, and free waves (model section 6)."""
+"""Rail under moving loads: closed form, damping, and free waves (theory section 6)."""
 
 from itertools import pairwise
 

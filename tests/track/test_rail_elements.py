@@ -1,4 +1,4 @@
-"""The rail's element matrices and its compiled kernels, against exact integrals of model section 6."""
+"""The rail's element matrices and its compiled kernels, against exact integrals of theory section 6."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def uneven():
 
 
 def exact_matrices(rail, exact, V, A):
-    """M, C and K of model section 6, written out, from the exact forms, for the unknowns that are free."""
+    """M, C and K of theory section 6, written out, from the exact forms, for the unknowns that are free."""
     inside = np.ix_(free(rail.nodes), free(rail.nodes))
     mass, stretch, drift, bend, twist = (exact[form][inside] for form in (MASS, TENSION, DRIFT, BENDING, TWIST))
     damping = 4.9e3 * mass + 1.0e3 * stretch - 2 * 60.0 * V * drift
@@ -173,7 +173,7 @@ def test_banded_solutions_agree_with_dense_ones():
 
 
 def test_energies_use_the_material_velocity(uneven):
-    """Kinetic energy and foundation loss of a rail in motion, by quadrature of y_t - V y_r (model section 9)."""
+    """Kinetic energy and foundation loss of a rail in motion, by quadrature of y_t - V y_r (theory section 9)."""
     rail, nodes, _ = uneven
     rng, V = np.random.default_rng(5), 44.0
     y, rate = rng.normal(size=2 * nodes.size), 300.0 * rng.normal(size=2 * nodes.size)

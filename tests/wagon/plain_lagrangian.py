@@ -1,6 +1,6 @@
-"""Energies of half a wagon, spelt out body by body from model sections 1 to 3, for plain numbers.
+"""Energies of half a wagon, spelt out body by body from theory sections 1 to 3, for plain numbers.
 
-The wagon's matrices are checked against second differences of these energies. Coordinates, in the order of model
+The wagon's matrices are checked against second differences of these energies. Coordinates, in the order of theory
 section 2: s, car heave and pitch, heave and pitch of bogie 1 and of bogie 2, four wheel heaves, four wheel
 rotations, slosh amplitudes.
 """

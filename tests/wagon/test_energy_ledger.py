@@ -1,4 +1,4 @@
-"""The energy ledger, added up again from a recorded history by formulas of its own (model section 9)."""
+"""The energy ledger, added up again from a recorded history by formulas of its own (theory section 9)."""
 
 import numpy as np
 import pytest

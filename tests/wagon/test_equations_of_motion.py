@@ -2,7 +2,7 @@
 
 Every equation is weighed with a smooth bump and integrated by parts until only recorded quantities are left:
 `INT q chi'' M - q chi' C + q chi K = INT Q chi`. So nothing has to be differentiated, and the history alone, forces
-and displacements, shows whether the wagon moved as model sections 2, 3, 7 and 8 say. Two damped slosh modes, three
+and displacements, shows whether the wagon moved as theory sections 2, 3, 7 and 8 say. Two damped slosh modes, three
 wheels that lock; one millisecond between rows.
 """
 
@@ -133,7 +133,7 @@ def test_torque_stops_the_wheel_against_the_creep_force(run, wheel):
 
 
 def test_contact_forces_follow_from_the_recorded_state(run):
-    """Hertz and Polach (model section 7, dry) at every row and wheel."""
+    """Hertz and Polach (theory section 7, dry) at every row and wheel."""
     c = run.channels
     heave, rail, normal = (of_wheels(run, name) for name in ("heave", "rail_deflection", "normal_force"))
     approach = np.maximum(rail - heave, 0.0)
@@ -152,7 +152,7 @@ def test_contact_forces_follow_from_the_recorded_state(run):
 
 @pytest.mark.parametrize("window", [(0.1, 17.0), (5.0, 6.0), (10.0, 14.0)])
 def test_liquid_force_and_moment_are_the_loads_own_momentum(run, load, window):
-    """Model section 3: force `-(m (u_B + z_c theta) + sum lambda_1 beta)''` of the whole tank, and its moment."""
+    """Theory section 3: force `-(m (u_B + z_c theta) + sum lambda_1 beta)''` of the whole tank, and its moment."""
     c, bump, wagon = run.channels, Bump(run.time, *window), run.scenario.wagon
     arm = wagon.traction_height - RADIUS
     pitches = c["bogie_1_pitch"] + c["bogie_2_pitch"]
@@ -173,7 +173,7 @@ def test_liquid_force_and_moment_are_the_loads_own_momentum(run, load, window):
 
 
 def test_surface_rises_in_front_while_braking(run):
-    """The sum of the modes' width-mean amplitudes; a positive one raises the rear (lambda_1 < 0, model section 4)."""
+    """The sum of the modes' width-mean amplitudes; a positive one raises the rear (lambda_1 < 0, theory section 4)."""
     c = run.channels
     amplitudes = c["slosh_1_amplitude"] + c["slosh_2_amplitude"]
     assert c["surface_rear"] == pytest.approx(amplitudes, abs=1e-12)

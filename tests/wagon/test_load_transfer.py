@@ -1,4 +1,4 @@
-"""Wheel loads at rest and in steady braking, by hand statics (model sections 1, 2 and 8)."""
+"""Wheel loads at rest and in steady braking, by hand statics (theory sections 1, 2 and 8)."""
 
 import numpy as np
 import pytest
@@ -103,7 +103,7 @@ def test_wagon_that_nothing_disturbs_rolls_on_for_ever(stop):
 
 
 def test_slope_work_of_steady_rolling_feeds_the_foundation(stop):
-    """What the wheels climb is what the foundation's dampers take (model section 9); the speed does not know it."""
+    """What the wheels climb is what the foundation's dampers take (theory section 9); the speed does not know it."""
     result = stop(*STEADY)
     climbed, taken = (result.channels[f"energy_{name}"] for name in ("slope_work", "foundation"))
     assert climbed[-1] > 100.0

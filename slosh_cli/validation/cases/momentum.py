@@ -49,7 +49,7 @@ def _rate(result: Result, channel: str) -> Array:
 
 
 def _lost(result: Result) -> Array:
-    """Momentum along the track (N s) that the whole wagon has lost since t = 0, body by body (model sections 2, 3)."""
+    """Momentum along the track (N s) that the whole wagon has lost since t = 0, body by body (theory sections 2, 3)."""
     case: Scenario = result.scenario
     wagon, load = case.wagon, frozen_load(case.tank)
     axle, pivot = wagon.wheelset.wheel_radius, wagon.traction_height

@@ -23,7 +23,7 @@ class Bodies:
     the slosh body; `slosh_height` counts from the car's centre.
 
     `attachment` is how far below the car's centre the secondary springs act: there the weight's overturning moment is
-    the `m_l g z_c theta` of model section 3.
+    the `m_l g z_c theta` of theory section 3.
     """
 
     car: float

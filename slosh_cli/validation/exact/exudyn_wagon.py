@@ -1,7 +1,7 @@
 """The wagon once more, built from rigid bodies, springs and joints in exudyn, a general multibody code.
 
 J. Gerstmayr, Exudyn: a C++-based Python package for flexible multibody systems, Multibody Syst. Dyn. 60 (2024)
-533-561. Nothing is linearised by hand but the longitudinal guidance of model section 2; rotations are finite. The slosh
+533-561. Nothing is linearised by hand but the longitudinal guidance of theory section 2; rotations are finite. A slosh
 mode is a body of mass lambda_1^2/mu that slides in the car on a spring, at the height lambda_02/lambda_1; the rest of
 the liquid is part of the car. One rail, half a wagon, x forward, y up, rotations positive nose-up.
 
@@ -47,7 +47,7 @@ def _build(system: Any, scenario: Scenario, mode: SloshMode, linear: bool) -> di
     car_node, car = build.body(bodies.car, bodies.car_inertia, sunk_car)
     build.weigh(car)
     yoke = _yoke(build)
-    # at the pivots' height the car goes with the mean of both bogies (model section 2)
+    # at the pivots' height the car goes with the mean of both bogies (theory section 2)
     build.tie(build.coordinates(car), [1, 0, bodies.car_height - pivot], yoke, [0.5, 0.5])
     axle_lines, wheel_nodes = [], []
     for k, place in enumerate((0.5 * wagon.pivot_spacing, -0.5 * wagon.pivot_spacing)):
@@ -150,7 +150,7 @@ def _slosh(build: Builder, bodies: Bodies, its_car: tuple[int, int], mode: Slosh
 
 
 def _linear_slosh(build: Builder, bodies: Bodies, its_car: tuple[int, int], mode: SloshMode, sunk: float) -> int:
-    """The slosh body with the quadratic energies of model section 3 and no others; returns its node.
+    """The slosh body with the quadratic energies of theory section 3 and no others; returns its node.
 
     With its shift `xi = x - x_car + h rotation` along the car the spring and gravity store
     `1/2 k xi^2 + m g (xi rotation - 1/2 h rotation^2)`; it heaves with the car, `xi rotation` left out.
