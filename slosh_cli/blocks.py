@@ -24,7 +24,7 @@ from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, inf
 from numba.extending import NativeValue, lower_builtin, register_model, typeof_impl, unbox
 from numba.np import numpy_support as np_support
 
-from slosh_cli.arrays import Kind
+from slosh_cli.arrays import ArrayKind
 
 _WORD = 8
 
@@ -110,21 +110,14 @@ class _Row(tuple[Block, ...]):
         if len({block.kind for block in blocks}) != 1:
             raise TypeError("a tuple of blocks holds one or more of the same kind")
         self._list = np.array([len(blocks), *(block.address for block in blocks)], dtype=np.int64)
-        self.address, self.kind = _address(self._list), RowType(blocks[0].kind)
-
-
-class _Array(NamedTuple):
-    """What an array field asks for."""
-
-    dtype: np.dtype[Any]
-    dimensions: int
+        self.address, self.kind = _address(self._list), _RowType(blocks[0].kind)
 
 
 class _Field(NamedTuple):
     """A field of a class of blocks: what is annotated, and the words that it takes in a block's memory."""
 
     hint: Any
-    array: _Array | None
+    array: ArrayKind | None
     place: int
     words: int
 
@@ -141,8 +134,7 @@ def _plan(cls: Any) -> _Plan:
     fields, size = {}, 0
     for name, hint in get_type_hints(cls, include_extras=True).items():
         if name != "address":
-            notes = (note for note in getattr(hint, "__metadata__", ()) if isinstance(note, Kind))
-            array = next((_Array(np.dtype(note.dtype), note.dimensions) for note in notes), None)
+            array = next((note for note in getattr(hint, "__metadata__", ()) if isinstance(note, ArrayKind)), None)
             words = 5 + 2 * array.dimensions if array else 1  # the members of numba's own array
             fields[name] = _Field(hint, array, size, words)
             size += words
@@ -150,23 +142,19 @@ def _plan(cls: Any) -> _Plan:
 
 
 def _address(array: Any) -> int:
-    return array.ctypes.data if array.size == 0 else ctypes.addressof(_BYTE.from_buffer(array))
-
-
-_BYTE = ctypes.c_char
+    return array.ctypes.data if array.size == 0 else ctypes.addressof(ctypes.c_char.from_buffer(array))
 
 
 def _as_part(name: str, field: _Field, value: Any) -> Any:
     """The value as a block, or as a row of blocks where one is asked for."""
     row = isinstance(value, tuple)
-    if row != (get_origin(field.hint) is tuple) or not all(
-        isinstance(one, Block) for one in (value if row else [value])
-    ):
+    blocks = all(isinstance(one, Block) for one in (value if row else [value]))
+    if row != (get_origin(field.hint) is tuple) or not blocks:
         raise TypeError(f"{name} must be {field.hint}, but is {value!r}")
     return _Row(value) if row else value
 
 
-def _fitting(name: str, wanted: _Array, value: Any) -> Any:
+def _fitting(name: str, wanted: ArrayKind, value: Any) -> Any:
     """The value as an array of the kind that is asked for; its numbers are not rounded to fit."""
     array = value
     if not (isinstance(value, np.ndarray) and value.dtype is wanted.dtype and value.flags.carray):
@@ -180,7 +168,7 @@ def _fitting(name: str, wanted: _Array, value: Any) -> Any:
 
 
 @cache
-def _kind_of(cls: Any, parts: tuple[Any, ...]) -> BlockType:
+def _kind_of(cls: Any, parts: tuple[Any, ...]) -> _BlockType:
     """numba's type of a block of `cls` with such parts."""
     kinds: dict[str, Any] = {}
     rest = iter(parts)
@@ -191,28 +179,28 @@ def _kind_of(cls: Any, parts: tuple[Any, ...]) -> BlockType:
             kinds[name] = types.float64 if field.hint is float else types.int64
         else:
             kinds[name] = next(rest)
-    return BlockType(cls, kinds)
+    return _BlockType(cls, kinds)
 
 
-class BlockType(types.Type):
+class _BlockType(types.Type):
     """numba's type of a block: its class, and the types of its parts where these are open."""
 
     def __init__(self, cls: Any, kinds: dict[str, Any]) -> None:
         self.cls, self.kinds = cls, kinds
-        parts = [str(kind) for kind in kinds.values() if isinstance(kind, (BlockType, RowType))]
+        parts = [str(kind) for kind in kinds.values() if isinstance(kind, (_BlockType, _RowType))]
         super().__init__(name=f"{cls.__module__}.{cls.__qualname__}" + (f"({', '.join(parts)})" if parts else ""))
 
 
-class RowType(types.Type):
+class _RowType(types.Type):
     """numba's type of a tuple of blocks of one class; their number is data."""
 
-    def __init__(self, element: BlockType) -> None:
+    def __init__(self, element: _BlockType) -> None:
         self.element = element
         super().__init__(name=f"row of {element}")
 
 
-register_model(BlockType)(models.OpaqueModel)
-register_model(RowType)(models.OpaqueModel)
+register_model(_BlockType)(models.OpaqueModel)
+register_model(_RowType)(models.OpaqueModel)
 
 
 @typeof_impl.register(Block)
@@ -220,8 +208,8 @@ def _typeof_block(value: Block, context: Any) -> Any:
     return value.kind
 
 
-@unbox(BlockType)
-def _unbox_block(kind: BlockType, block: Any, c: Any) -> NativeValue:
+@unbox(_BlockType)
+def _unbox_block(kind: _BlockType, block: Any, c: Any) -> NativeValue:
     address = c.pyapi.object_getattr_string(block, "address")
     pointer = c.pyapi.long_as_voidptr(address)
     c.pyapi.decref(address)
@@ -232,7 +220,7 @@ def _unbox_block(kind: BlockType, block: Any, c: Any) -> NativeValue:
 class _Fields(AttributeTemplate):
     """Types of what a block has: its fields, and its kernels as methods."""
 
-    key = BlockType
+    key = _BlockType
 
     def generic_resolve(self, block: Any, name: str) -> Any:  # type: ignore[override]
         kind = block.kinds.get(name)
@@ -245,15 +233,15 @@ class _Fields(AttributeTemplate):
             return _kernel_type(block, name).get_call_type(template.context, (block, *args), kws).as_method()
 
         return types.BoundFunction(
-            type(name, (AbstractTemplate,), {"key": (BlockType, name), "generic": generic}), block
+            type(name, (AbstractTemplate,), {"key": (_BlockType, name), "generic": generic}), block
         )
 
 
-def _kernel_type(block: BlockType, name: str) -> Any:
+def _kernel_type(block: _BlockType, name: str) -> Any:
     return types.Dispatcher(getattr(block.cls, name))
 
 
-def _pointer_to(context: Any, builder: Any, block: BlockType, value: Any, name: str) -> tuple[Any, Any]:
+def _pointer_to(context: Any, builder: Any, block: _BlockType, value: Any, name: str) -> tuple[Any, Any]:
     """The model of a field, and a pointer to it."""
     place = _plan(block.cls).fields[name].place
     model = context.data_model_manager[block.kinds[name]]
@@ -261,13 +249,13 @@ def _pointer_to(context: Any, builder: Any, block: BlockType, value: Any, name: 
     return model, pointer
 
 
-@lower_getattr_generic(BlockType)
-def _get_field(context: Any, builder: Any, block: BlockType, value: Any, name: str) -> Any:
+@lower_getattr_generic(_BlockType)
+def _get_field(context: Any, builder: Any, block: _BlockType, value: Any, name: str) -> Any:
     model, pointer = _pointer_to(context, builder, block, value, name)
     return model.load_from_data_pointer(builder, pointer)
 
 
-@lower_setattr_generic(BlockType)
+@lower_setattr_generic(_BlockType)
 def _set_field(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
     if not isinstance(sig.args[1], types.Number):
         raise TypingError(f"{name} is no number: a kernel cannot put another in its place")
@@ -279,7 +267,7 @@ def _set_field(context: Any, builder: Any, sig: Any, args: Any, name: str) -> No
 def _let_kernels_call(name: str) -> None:
     """Let kernels call the method `name` of a block."""
 
-    @lower_builtin((BlockType, name), BlockType, types.VarArg(types.Any))
+    @lower_builtin((_BlockType, name), _BlockType, types.VarArg(types.Any))
     def _method(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         kind = _kernel_type(sig.args[0], name)
         own = kind.get_call_type(context.typing_context, sig.args, {})
@@ -292,7 +280,7 @@ def _let_kernels_call(name: str) -> None:
 class _Element(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
         row, place = args
-        if isinstance(row, RowType) and isinstance(place, types.Integer):
+        if isinstance(row, _RowType) and isinstance(place, types.Integer):
             return signature(row.element, row, types.intp)
         return None
 
@@ -300,16 +288,16 @@ class _Element(AbstractTemplate):
 @infer_global(len)
 class _Length(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(types.intp, *args) if isinstance(args[0], RowType) else None
+        return signature(types.intp, *args) if isinstance(args[0], _RowType) else None
 
 
-@lower_builtin(operator.getitem, RowType, types.intp)
+@lower_builtin(operator.getitem, _RowType, types.intp)
 def _get_element(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     row, place = args
     pointers = builder.bitcast(row, cgutils.voidptr_t.as_pointer())
     return builder.load(builder.gep(pointers, [builder.add(place, place.type(1))]))
 
 
-@lower_builtin(len, RowType)
+@lower_builtin(len, _RowType)
 def _get_length(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return builder.load(builder.bitcast(args[0], cast(Any, cgutils.intp_t).as_pointer()))

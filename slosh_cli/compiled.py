@@ -51,21 +51,21 @@ def _build() -> str:
 SOURCES: Final = _sources()
 """Tells one build of the solver from another."""
 
-STORE: Final = KernelStore(_build() if SOURCES else "")
+_STORE: Final = KernelStore(_build() if SOURCES else "")
 
 
 _rebuild: Any = CompileResult._rebuild  # numba's own types end here
 
 
 class _Kept(NullCache):
-    """numba's view of `STORE` for one function."""
+    """numba's view of `_STORE` for one function."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}-{function.__code__.co_firstlineno}"
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         target_context.refresh()
-        kept = STORE.load(self._name, _key(sig, target_context.codegen()))
+        kept = _STORE.load(self._name, _key(sig, target_context.codegen()))
         try:
             return None if kept is None else _rebuild(target_context, *kept)
         except Exception:  # made by a program that no longer fits, whatever it says
@@ -73,7 +73,7 @@ class _Kept(NullCache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         if not data.library.has_dynamic_globals and all(one.can_cache for one in data.lifted):
-            STORE.save(self._name, _key(sig, data.codegen), data._reduce(), dumps)
+            _STORE.save(self._name, _key(sig, data.codegen), data._reduce(), dumps)
 
 
 def _key(signature: Any, codegen: Any) -> tuple[Any, ...]:
@@ -105,22 +105,14 @@ def inner_kernel(function: F) -> F:
     return _compile(function, no_cpython_wrapper=True)
 
 
-def part_kernel(function: F) -> F:
-    """Like `inner_kernel` for functions with one caller, which they become part of.
-
-    A call hands over an array as seven numbers and a state as a thousand, which costs more than the shorter kernels do.
-    """
-    return _compile(function, no_cpython_wrapper=True, forceinline=True)
-
-
 def is_cached(name: str = "advance.advance") -> bool:
     """True when the kernel `name` (MODULE.FUNCTION, by default the time loop) was compiled before by this very build.
 
     A kernel is kept after the ones that it calls, and with them.
     """
-    return bool(getattr(config, "DISABLE_JIT", False)) or STORE.holds(name)
+    return bool(getattr(config, "DISABLE_JIT", False)) or _STORE.holds(name)
 
 
 def not_kept() -> str:
     """Why kernels cannot be kept for the next run; empty where they can."""
-    return STORE.trouble
+    return _STORE.trouble

@@ -64,7 +64,7 @@ class KernelStore:
             self.trouble = "the program's own sources cannot be read"
             return
         try:
-            home = cache_home()
+            home = _cache_home()
         except RuntimeError:
             self.trouble = "there is no home folder"
             return
@@ -117,7 +117,7 @@ class KernelStore:
             self.trouble = f"cannot write into {self.folder}: {error.strerror or error}"
 
 
-def cache_home() -> Path:
+def _cache_home() -> Path:
     """The folder of the builds' folders. Raises RuntimeError where nobody knows the user's home."""
     if os.environ.get("NUMBA_CACHE_DIR"):
         return Path(os.environ["NUMBA_CACHE_DIR"]).absolute()

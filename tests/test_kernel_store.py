@@ -299,7 +299,7 @@ def _imports(file: Path) -> Iterator[tuple[str, str, str]]:
             assert not any(alias.name.startswith("slosh_cli") for alias in node.names), f"{file}: import names"
 
 
-KERNELS = {"kernel", "inner_kernel", "part_kernel", "vector_kernel"}
+KERNELS = {"kernel", "inner_kernel", "vector_kernel"}
 
 
 def _with_kernels() -> list[Path]:

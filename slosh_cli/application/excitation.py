@@ -12,7 +12,7 @@ from slosh_cli.application.keeping import Keeping, by_kind
 from slosh_cli.application.plotting import writers
 from slosh_cli.application.prescription import Amount, Prescription
 from slosh_cli.report import FORMATS
-from slosh_cli.results.validity import Check, plain, warnings_of
+from slosh_cli.results.validity import Check, plain_checks, warnings_of
 from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
 
 if TYPE_CHECKING:
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slosh_cli.application.plotting import Figures
+    from slosh_cli.arrays import Vector
     from slosh_cli.results.channels import Channel
     from slosh_cli.results.recommendation import Recommendation
-    from slosh_cli.results.result import Vector
     from slosh_cli.solver.excite import Excitation
 
 _TABLE: Final = "excite.csv"
@@ -94,7 +94,7 @@ class ExcitationResult:
             "mass_error": found.mass_error,
             "accuracy": found.accuracy,
             "reason": found.reason,
-            "checks": plain(self.checks),
+            "checks": plain_checks(self.checks),
             "recommendation": self.recommendation.as_dict() if self.recommendation else None,
             "warnings": self.warnings,
         }

@@ -16,7 +16,7 @@ from slosh_cli.errors import UsageError
 from slosh_cli.report import FORMATS
 from slosh_cli.results.files import try_targets
 from slosh_cli.results.tables import write_table
-from slosh_cli.results.validity import Check, plain, warnings_of
+from slosh_cli.results.validity import Check, plain_checks, warnings_of
 from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
 from slosh_cli.tank.chart import FillChart, fill_chart
 from slosh_cli.tank.coefficients import SloshMode, tank_modes
@@ -90,7 +90,7 @@ class TankCoefficients:
                 "unknowns": self.solved.unknowns,
             },
             "solve_seconds": self.solved.solve_seconds,
-            "checks": plain(self.checks),
+            "checks": plain_checks(self.checks),
             "recommendation": self.recommendation.as_dict(),
             "warnings": list(self.warnings),
         }
@@ -169,7 +169,7 @@ def coefficients(scenario: Scenario | TankScenario | str | Path, modes: int | No
 
 
 @dataclass(frozen=True, eq=False)
-class TankChart:
+class _TankChart:
     """Slosh modes of a scenario's tank against its filling."""
 
     scenario: Scenario | TankScenario = field(repr=False)
@@ -219,9 +219,9 @@ def chart_fills(
     fills: Sequence[float],
     modes: int | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> TankChart:
+) -> _TankChart:
     """The tank's modes at each of `fills` (depth over height); `progress` is told how many of how many are done."""
-    return TankChart(scenario, fill_chart(scenario.tank, fills, modes or scenario.tank.modes, progress))
+    return _TankChart(scenario, fill_chart(scenario.tank, fills, modes or scenario.tank.modes, progress))
 
 
 def chart_folder(scenario: Scenario | TankScenario, given: Path | None, settings: Sequence[str]) -> Path:

@@ -13,7 +13,7 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     """
     from slosh_cli.application.stop import outlook
     from slosh_cli.cli.reading import load_given
-    from slosh_cli.results.validity import plain, warnings_of
+    from slosh_cli.results.validity import plain_checks, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
 
     scenario = load_given(load_any_scenario, scenario_file, overrides)
@@ -22,7 +22,7 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     warnings = warnings_of(verdicts)
     if as_json:
         found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
-        say_json(found | {"checks": plain(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
+        say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
     else:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
         say(advice.sentence)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.output import say, show
-from slosh_cli.results.answers import Answer, Line, PerWheel
+from slosh_cli.results.answers import Answer, PerWheel, Told
 from slosh_cli.results.channels import WHEELS
 from slosh_cli.results.result import Result, Status
 
@@ -43,13 +43,13 @@ def _facts(result: Result) -> "Table":
     return table
 
 
-def _lines(*, per_wheel: bool) -> list[tuple[Answer, Line]]:
+def _lines(*, per_wheel: bool) -> list[tuple[Answer, Told]]:
     """The answers that the terminal shows, in its order."""
     found = [(one, one.line) for one in Result.table() if one.line and (one.kind == PerWheel) == per_wheel]
     return sorted(found, key=lambda pair: pair[1].at)
 
 
-def _text(value: Any, line: Line) -> str:
+def _text(value: Any, line: Told) -> str:
     if not line.form:
         return str(value)
     if value is None or not math.isfinite(value):
@@ -57,18 +57,18 @@ def _text(value: Any, line: Line) -> str:
     return f"{value / line.per:{line.form}} {line.unit}".rstrip()
 
 
-def _surface(result: Result, line: Line) -> str:
+def _surface(result: Result, line: Told) -> str:
     room = f"(room: {_text(result.surface_limit_m, line)})"
     return f"{_text(result.max_surface_m, line)} {room}" if result.has_liquid else ""
 
 
-def _range(result: Result, _: Line) -> str:
+def _range(result: Result, _: Told) -> str:
     """Yes, or the checks that say no."""
     outside = [check.name for check in result.checks if check.kind == "model" and not check.within]
     return f"no: {', '.join(outside)}" if outside else "yes"
 
 
-def _suiting(result: Result, _: Line) -> str:
+def _suiting(result: Result, _: Told) -> str:
     """The recommended model, with the expected errors of the force on the tank where it is another one."""
     advice = result.recommendation
     if advice is None:
@@ -78,7 +78,7 @@ def _suiting(result: Result, _: Line) -> str:
     return f"{advice.model} (expected error of the force {advice.errors} of mass times deceleration)"
 
 
-_WORDS: Final[Mapping[str, Callable[[Result, Line], str]]] = {
+_WORDS: Final[Mapping[str, Callable[[Result, Told], str]]] = {
     "max_surface_m": _surface,
     "in_model_range": _range,
     "recommendation": _suiting,

@@ -1,7 +1,7 @@
 """Answers: declared once, beside the attribute that holds them; files, tables, JSON and terminal derive from that line.
 
 A class of answers (a run, a vehicle, a coupling) says ``weight_N: float = computed("N", "weight of wagon and load")``.
-JSON and HDF5 take them in the order of the class, tables in that of `Place`, the terminal in that of `Line.at`.
+JSON and HDF5 take them in the order of the class, tables in that of `Place`, the terminal in that of `Told.at`.
 """
 
 import json
@@ -45,7 +45,7 @@ class Place(IntEnum):
 
 
 @dataclass(frozen=True)
-class Line:
+class Told:
     """An answer on the terminal: the lowest `at` comes first, `form` formats a number counted in `per` SI units."""
 
     at: int
@@ -75,7 +75,7 @@ class Answer:
     given: str = ""
     of: Callable[[Any], Any] | None = None
     needed: bool = False
-    line: Line | None = None
+    line: Told | None = None
     name: str = ""
     kind: Any = None
 

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final
 import h5py
 import numpy as np
 
+from slosh_cli.arrays import Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import TIME, Channel, channel
 from slosh_cli.results.files import FileError, replacing
-from slosh_cli.results.result import Result, Vector
+from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.version import __version__
 

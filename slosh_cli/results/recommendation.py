@@ -18,13 +18,13 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.still import frequency_excess
 
-MovingLiquid = Literal["modal", "shallow-water"]
+_MovingLiquid = Literal["modal", "shallow-water"]
 
 LINEAR_ERRORS = ((0.0, 0.0), (0.798, 0.218), (1.996, 0.363))
 """Surface movement a L/g over the lesser of room and depth -> error of the modal liquid (0.6 and 1.5 m/s^2)."""
 SHALLOW_ERROR = 0.132
 """The larger of shallow water's errors there, 0.132 and 0.109; its frequency is 1 % high in that tank."""
-DRIFT = 3.1
+_DRIFT = 3.1
 """Error per excess of the first frequency: a share 8/pi^2 of the force gains the phase 2 pi n e in n = 1.5 periods
 (14 s there); the rms of the difference is 8/pi^2 2 pi n e/sqrt(6)."""
 
@@ -38,7 +38,7 @@ class Recommendation:
     Without a deceleration (a tank alone) there is no model and no error, only the changeover.
     """
 
-    model: MovingLiquid | None
+    model: _MovingLiquid | None
     deceleration: float | None
     error: float | None
     other_error: float | None
@@ -83,7 +83,7 @@ def recommend(tank: Tank, deceleration: float | None) -> Recommendation:
         return Recommendation(None, None, None, None, changeover, sentence)
     size = abs(deceleration)
     linear = linear_error(size * tank.length / STANDARD_GRAVITY / least)
-    model: MovingLiquid = "modal" if size <= changeover and not walls else "shallow-water"
+    model: _MovingLiquid = "modal" if size <= changeover and not walls else "shallow-water"
     error, other = (linear, shallow) if model == "modal" else (shallow, linear)
     sentence = (
         f"At {size:.2f} m/s^2 use tank.liquid.model: {model} (expected error of the force {_words(error)} of mass "
@@ -93,7 +93,7 @@ def recommend(tank: Tank, deceleration: float | None) -> Recommendation:
     return Recommendation(model, size, error, other, changeover, sentence)
 
 
-def _reason(tank: Tank, size: float, model: MovingLiquid) -> str:
+def _reason(tank: Tank, size: float, model: _MovingLiquid) -> str:
     """Why this model, at a deceleration of this `size` (m/s^2); the liquid's own model is left out of account."""
     if tank.baffles:
         return "the modal liquid knows no baffles"
@@ -113,7 +113,7 @@ def _words(error: float) -> str:
     return f"{error:.2f}" if error <= most else f"over {most:.2f}"
 
 
-def _other(model: MovingLiquid) -> MovingLiquid:
+def _other(model: _MovingLiquid) -> _MovingLiquid:
     return "modal" if model == "shallow-water" else "shallow-water"
 
 
@@ -135,7 +135,7 @@ def movement_of(error: float) -> float:
 
 def shallow_error(excess: float) -> float:
     """Expected error of shallow water whose first frequency is too high by the part `excess`."""
-    return math.hypot(SHALLOW_ERROR, DRIFT * excess)
+    return math.hypot(SHALLOW_ERROR, _DRIFT * excess)
 
 
 def stop_deceleration(scenario: Scenario) -> float:

@@ -16,7 +16,7 @@ from slosh_cli.method import START
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import excite_kernels
-from slosh_cli.solver.setup import HALF, Problem
+from slosh_cli.solver.setup import HALF, ReadyStop
 from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.liquid import Slosh
@@ -27,22 +27,22 @@ from slosh_cli.wagon.model import CAR_PITCH
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PERIODS = 4.0
+_PERIODS = 4.0
 """Periods of the first mode that the modes are looked at for."""
-SAMPLES = 400
+_SAMPLES = 400
 """Instants per period of the fastest mode, at which its force is looked at."""
-CELL_PERIODS = 0.5
+_CELL_PERIODS = 0.5
 """Periods of the first mode that cells are carried on for: in half of one every wave reaches the wall ahead of it,
 and bores lose their height from one passage to the next."""
-CELL_SAMPLES = 60
+_CELL_SAMPLES = 60
 """Instants per period between which the mean force of the cells is looked at."""
-REST_SPEED = 0.1
+_REST_SPEED = 0.1
 """A stop speed (m/s) up to which a stopped wagon is as good as at rest."""
 
 
-def rest_checks(scenario: Scenario, stop: Problem) -> tuple[Check, ...]:
+def rest_checks(scenario: Scenario, stop: ReadyStop) -> tuple[Check, ...]:
     """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
-    if type(stop.vehicle.liquid) is Slosh or scenario.braking.stop_speed > REST_SPEED:
+    if type(stop.vehicle.liquid) is Slosh or scenario.braking.stop_speed > _REST_SPEED:
         return ()
     (on, back), held = largest_pushes(stop.vehicle), holding_force(scenario, stop.static_loads)
     push, way = max(on, back), "on" if on > held else "back"
@@ -87,8 +87,8 @@ def _push_of_modes(liquid: ModalLiquid, pitch: float) -> Vector:
     swing = np.sqrt(frequency**2 - decay**2)
     place = liquid.amplitude[START] - liquid.pitch_weight * pitch / liquid.stiffness
     other = (liquid.rate[START] + decay * place) / swing
-    duration = 2.0 * np.pi * PERIODS / frequency.min()
-    count = min(int(PERIODS * SAMPLES * frequency.max() / frequency.min()), 100_000)
+    duration = 2.0 * np.pi * _PERIODS / frequency.min()
+    count = min(int(_PERIODS * _SAMPLES * frequency.max() / frequency.min()), 100_000)
     time = np.linspace(0.0, duration, count)[:, None]
     fade, cosine, sine = np.exp(-decay * time), np.cos(swing * time), np.sin(swing * time)
     amplitude = fade * (place * cosine + other * sine)
@@ -104,8 +104,8 @@ def _push_of_cells(cells: CellLiquid, pitch: float) -> Vector:
     table, still = liquid.table, liquid.still_depth
     mean_depth = np.interp(still, table.depth, table.area) / np.interp(still, table.depth, table.width)
     period = 2.0 * liquid.cells * liquid.spacing / np.sqrt(liquid.gravity * mean_depth)
-    count = int(CELL_PERIODS * CELL_SAMPLES)
-    lengths = np.full(count, period / CELL_SAMPLES)
+    count = int(_CELL_PERIODS * _CELL_SAMPLES)
+    lengths = np.full(count, period / _CELL_SAMPLES)
     leaning = np.full(count, liquid.gravity * pitch)
     rows, work = np.zeros((count, 6)), np.zeros((WORK_ROWS, liquid.cells + 1))
     done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, leaning, work, np.zeros(4), rows)

@@ -7,10 +7,10 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Vector
 from slosh_cli.errors import UsageError
-from slosh_cli.results.answers import Answers, Line, PerWheel, Place, Shown, computed, derived
+from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
 from slosh_cli.results.channels import TIME, channel, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from slosh_cli.results.recommendation import Recommendation
     from slosh_cli.scenario import Scenario
-
-Vector = NDArray[np.float64]
 
 
 class Status(StrEnum):
@@ -85,13 +83,13 @@ class Record(Answers):
 
     # fmt: off
     name: str = derived("", "name of the scenario", Place.NAME, given="name", shown=~Shown.STUDY, needed=True)
-    status: Status = computed("", "how the run ended", Place.STATUS, needed=True, line=Line(1, "status"))
+    status: Status = computed("", "how the run ended", Place.STATUS, needed=True, line=Told(1, "status"))
     braking_distance_m: float | None = computed(
         "m", "from the onset to the stop speed; none when the wagon did not stop", Place.DISTANCE, needed=True,
-        line=Line(2, "braking distance", ".2f", "m"))
+        line=Told(2, "braking distance", ".2f", "m"))
     braking_time_s: float | None = computed(
         "s", "from the onset to the stop speed; none when the wagon did not stop", Place.DISTANCE,
-        line=Line(3, "braking time", ".2f", "s"))
+        line=Told(3, "braking time", ".2f", "s"))
     initial_speed_m_s: float = derived(
         "m/s", "V0, the speed at t = 0", Place.CONDITIONS, given="braking.initial_speed", needed=True,
         column="v0_km_h", per=1 / 3.6)
@@ -109,39 +107,39 @@ class Record(Answers):
         of=lambda run: all(check.within for check in _of_range(run) if check.name not in _NOT_THE_LIQUID))
     max_surface_m: float = computed(
         "m", "largest rise of the free surface at an end wall", Place.SURFACE,
-        line=Line(4, "surface rise at an end wall, largest", ".2f", "m"))
+        line=Told(4, "surface rise at an end wall, largest", ".2f", "m"))
     surface_limit_m: float = computed("m", "room above the still surface", Place.SURFACE, needed=True)
     min_wheel_load_N: PerWheel = computed(
         "N", "least load from onset to stop, from the integrator's own steps", Place.WHEELS,
-        line=Line(2, "least / kN", ".1f", per=1e3))
+        line=Told(2, "least / kN", ".1f", per=1e3))
     max_wheel_load_N: PerWheel = computed(
         "N", "largest load from onset to stop, from the integrator's own steps", Place.WHEELS,
-        line=Line(3, "most / kN", ".1f", per=1e3))
+        line=Told(3, "most / kN", ".1f", per=1e3))
     static_wheel_load_N: PerWheel = computed(
         "N", "load of the wagon at rest", Place.WHEELS, shown=~Shown.JSON, needed=True,
-        line=Line(1, "at rest / kN", ".1f", per=1e3))
+        line=Told(1, "at rest / kN", ".1f", per=1e3))
     wheel_unloading: PerWheel = derived(
         "1", "largest 1 - N/N0 from onset to stop", Place.WHEELS, shown=Shown(0), of=_unloading,
-        line=Line(4, "unloading / %", ".1f", per=0.01))
+        line=Told(4, "unloading / %", ".1f", per=0.01))
     max_wheel_unloading: float = derived(
         "1", "largest 1 - N/N0 of any wheel, from onset to stop; 1 means that a wheel lost contact",
         of=lambda run: max(_unloading(run)),
-        line=Line(7, "wheel unloading, largest", ".1f", "% (usual limit: 60 %)", per=0.01))
+        line=Told(7, "wheel unloading, largest", ".1f", "% (usual limit: 60 %)", per=0.01))
     locked_time_s: PerWheel = computed(
-        "s", "how long a wheel was locked", Place.WHEELS, line=Line(5, "locked / s", ".2f"))
+        "s", "how long a wheel was locked", Place.WHEELS, line=Told(5, "locked / s", ".2f"))
     mean_total_wheel_load_N: float = computed(
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
-        line=Line(8, "mean sum of wheel loads / weight - 1", ".1e"))
+        line=Told(8, "mean sum of wheel loads / weight - 1", ".1e"))
     weight_N: float = computed("N", "weight of wagon and load", shown=~Shown.JSON)
     energy_residual: float = computed(
         "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
-        line=Line(9, "energy ledger, largest residual", ".1e", "of the initial energy"))
-    steps: int = computed("1", "accepted steps of the integrator", line=Line(10, "steps"))
+        line=Told(9, "energy ledger, largest residual", ".1e", "of the initial energy"))
+    steps: int = computed("1", "accepted steps of the integrator", line=Told(10, "steps"))
     rejected_steps: int = computed("1", "rejected steps of the integrator")
-    solve_seconds: float = computed("s", "time spent in the solver", shown=~Shown.STUDY, line=Line(11, "solver time"))
+    solve_seconds: float = computed("s", "time spent in the solver", shown=~Shown.STUDY, line=Told(11, "solver time"))
     in_model_range: bool = derived(
         "", "false where a check says that the run left the range of its own model",
-        of=lambda run: all(check.within for check in _of_range(run)), line=Line(5, "within the range of its model"))
+        of=lambda run: all(check.within for check in _of_range(run)), line=Told(5, "within the range of its model"))
     checks: tuple[Check, ...] = computed(
         "", "verdicts: values beside their limits", shown=Shown.JSON | Shown.HISTORY, default_factory=tuple)
     not_within: str = derived(
@@ -222,7 +220,7 @@ class Result(Record):
 
     recommendation: "Recommendation | None" = computed(
         "", "the model of the liquid that suits the stop; none for a rigid load", shown=Shown.JSON | Shown.HISTORY,
-        line=Line(6, "model of the liquid that suits"), default_factory=lambda: None,
+        line=Told(6, "model of the liquid that suits"), default_factory=lambda: None,
     )  # fmt: skip
     scenario: "Scenario"
     energy: Mapping[str, float]

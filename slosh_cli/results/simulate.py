@@ -22,7 +22,7 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver import advance
 from slosh_cli.solver.record import Columns, columns_of
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
-from slosh_cli.solver.setup import HALF, Problem, problem
+from slosh_cli.solver.setup import HALF, ReadyStop, problem
 from slosh_cli.solver.vehicle import (
     BRAKE,
     CREEP,
@@ -40,7 +40,7 @@ from slosh_cli.tank.section import section_of
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION
 
-WHOLE = 1 / HALF
+_WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
 
 
@@ -86,12 +86,9 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     run = integrate(stop, progress, cancel)
     vehicle, time = stop.vehicle, stop.train.time
     end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
-    status, reason = _OUTCOMES[run.outcome]
-    stopped = status is Status.STOPPED and braked
-    if status is Status.STOPPED and not braked:
-        status, reason = Status.FAILED, "came to rest at t = {time:.4g} s, before the brake set in: no braking distance"
-    tank, weight = scenario.tank, stop.weight
-    advice = recommended(scenario)
+    status, reason = _ending(run, braked)
+    stopped, tank, weight = status is Status.STOPPED, scenario.tank, stop.weight
+    advice = _recommended(scenario)
     verdicts = _verdicts(scenario, stop, run, advice)
     return Result(
         scenario=scenario,
@@ -109,35 +106,49 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         min_wheel_load_N=_per_wheel(account.least) if braked else static_loads,
         max_wheel_load_N=_per_wheel(account.largest) if braked else static_loads,
         static_wheel_load_N=static_loads,
-        mean_total_wheel_load_N=WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
-        weight_N=WHOLE * weight,
+        mean_total_wheel_load_N=_WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
+        weight_N=_WHOLE * weight,
         locked_time_s=_per_wheel(account.locked_time),
         energy_residual=stop.train.largest_residual,
         energy=_final_energy(stop),
         steps=stop.train.steps,
         rejected_steps=stop.train.rejected,
-        work={
-            "newton_iterations": account.newton,
-            "factorisations": account.factorisations,
-            "right_hand_sides": account.right_hand_sides,
-            "events": stop.train.events,
-        },
+        work=_work(stop),
         solve_seconds=run.seconds,
     )
+
+
+def _ending(run: Run, braked: bool) -> tuple[Status, str]:
+    """How the run ended and why, times and speeds still to be put in."""
+    status, reason = _OUTCOMES[run.outcome]
+    if status is Status.STOPPED and not braked:
+        return Status.FAILED, "came to rest at t = {time:.4g} s, before the brake set in: no braking distance"
+    return status, reason
+
+
+def _work(stop: ReadyStop) -> dict[str, int]:
+    """What was computed, in counts."""
+    account = stop.vehicle.account
+    return {
+        "newton_iterations": account.newton,
+        "factorisations": account.factorisations,
+        "right_hand_sides": account.right_hand_sides,
+        "events": stop.train.events,
+    }
 
 
 def _per_wheel(values: Vector) -> PerWheel:
     return cast(PerWheel, tuple(float(value) for value in values))
 
 
-def recommended(scenario: Scenario) -> Recommendation | None:
+def _recommended(scenario: Scenario) -> Recommendation | None:
     """The model of the liquid that suits this stop; None for a load that is frozen on purpose."""
     if scenario.tank.liquid.model == "rigid":
         return None
     return recommend(scenario.tank, stop_deceleration(scenario))
 
 
-def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
+def _verdicts(scenario: Scenario, stop: ReadyStop, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
     """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track, its rest."""
     tank, sentence = scenario.tank, advice.sentence if advice else ""
     liquid, stopped = stop.vehicle.liquid, run.outcome == advance.STOPPED and stop.vehicle.brake.breaks > 0
@@ -153,7 +164,7 @@ def _verdicts(scenario: Scenario, stop: Problem, run: Run, advice: Recommendatio
     )
 
 
-def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
+def _extent(scenario: Scenario, stop: ReadyStop, run: Run) -> Extent:
     """What the verdicts on the run as a whole look at."""
     account = stop.vehicle.account
     return Extent(
@@ -166,14 +177,14 @@ def _extent(scenario: Scenario, stop: Problem, run: Run) -> Extent:
     )
 
 
-def _final_energy(stop: Problem) -> dict[str, float]:
+def _final_energy(stop: ReadyStop) -> dict[str, float]:
     """The ledger at the end of the run, J of the whole wagon."""
     account = stop.vehicle.account
-    kinetic, elastic, slosh = WHOLE * account.energies
-    losses = WHOLE * account.losses
+    kinetic, elastic, slosh = _WHOLE * account.energies
+    losses = _WHOLE * account.losses
     return {
-        "initial_kinetic": WHOLE * stop.train.initial_kinetic,
-        "initial_total": WHOLE * stop.train.total_start,
+        "initial_kinetic": _WHOLE * stop.train.initial_kinetic,
+        "initial_total": _WHOLE * stop.train.total_start,
         "kinetic": float(kinetic),
         "elastic": float(elastic),
         "slosh": float(slosh),
@@ -245,8 +256,8 @@ def _load_channels(
     if not isinstance(liquid, ModalLiquid):
         return channels
     amplitude, second = np.split(recorded, 2, axis=1)
-    channels["liquid_force"] -= WHOLE * second @ liquid.lambda_1
-    channels["liquid_moment"] += WHOLE * (amplitude @ liquid.pitch_weight - second @ liquid.lambda_02)
+    channels["liquid_force"] -= _WHOLE * second @ liquid.lambda_1
+    channels["liquid_moment"] += _WHOLE * (amplitude @ liquid.pitch_weight - second @ liquid.lambda_02)
     channels["surface_front"] = amplitude @ liquid.side
     channels["surface_rear"] = -amplitude @ liquid.side
     return channels | {slosh_amplitude(n + 1): amplitude[:, n] for n in range(amplitude.shape[1])}
@@ -255,8 +266,9 @@ def _load_channels(
 def _cell_channels(scenario: Scenario, recorded: Matrix, acceleration: Matrix) -> dict[str, Vector]:
     """Force and moment of the shallow-water liquid on the whole tank (means over steps), surface at both walls."""
     return {
-        "liquid_force": WHOLE * recorded[:, 0],
-        "liquid_moment": WHOLE * recorded[:, 1] - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
+        "liquid_force": _WHOLE * recorded[:, 0],
+        "liquid_moment": _WHOLE * recorded[:, 1]
+        - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
         "surface_front": recorded[:, 2],
         "surface_rear": recorded[:, 3],
     }
@@ -264,8 +276,8 @@ def _cell_channels(scenario: Scenario, recorded: Matrix, acceleration: Matrix) -
 
 def _energy_channels(rows: Matrix, columns: Columns) -> dict[str, Vector]:
     stored = ("energy_kinetic", "energy_elastic", "energy_slosh")
-    channels = {name: WHOLE * rows[:, columns.energies + k] for k, name in enumerate(stored)}
+    channels = {name: _WHOLE * rows[:, columns.energies + k] for k, name in enumerate(stored)}
     for name, place in _LOSSES.items():
-        channels[f"energy_{name}"] = WHOLE * rows[:, columns.losses + place]
+        channels[f"energy_{name}"] = _WHOLE * rows[:, columns.losses + place]
     channels["energy_residual"] = rows[:, columns.residual]
     return channels

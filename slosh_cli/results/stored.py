@@ -7,9 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from slosh_cli.arrays import Vector
 from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
 from slosh_cli.results.channels import TIME, WHEELS, wheel
-from slosh_cli.results.result import Record, Status, Vector
+from slosh_cli.results.result import Record, Status
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario.scalars import well_formed
 

@@ -12,7 +12,7 @@ from typing import Literal
 
 UNLOADING_LIMIT = 0.6
 """Usual limit of the wheel unloading dQ/Q0: EN 14363, assessment of safety against derailment on twisted track."""
-LEDGER_LIMIT = 1e-3
+_LEDGER_LIMIT = 1e-3
 """An energy residual above this part of the initial kinetic energy is worth a warning."""
 PITCH_CHECK = "pitch beyond small angles"
 
@@ -82,7 +82,7 @@ def _checks(x: Extent) -> Iterator[Check]:
         "energy ledger residual",
         "accuracy",
         x.residual,
-        LEDGER_LIMIT,
+        _LEDGER_LIMIT,
         f"The energy ledger misses {x.residual:.1e} of the initial kinetic energy: {x.residual_cause}.",
     )
     yield Check(
@@ -107,6 +107,6 @@ def warnings_of(verdicts: Sequence[Check]) -> list[str]:
     return [check.meaning for check in verdicts if not check.within and check.name != PITCH_CHECK]
 
 
-def plain(verdicts: Sequence[Check]) -> list[dict[str, object]]:
+def plain_checks(verdicts: Sequence[Check]) -> list[dict[str, object]]:
     """The verdicts as JSON and HDF5 have them."""
     return [check.as_dict() for check in verdicts]

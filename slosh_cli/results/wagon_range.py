@@ -19,13 +19,13 @@ from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.section import section_of
 from slosh_cli.wagon.model import POSITION, wagon_model
 
-AXLE_LOAD_LIMIT = 22.5
+_AXLE_LOAD_LIMIT = 22.5
 """t; line category D (EN 15528), the heaviest that most European lines take."""
-FRAME_LIMIT = 3.5
+_FRAME_LIMIT = 3.5
 """t; heavier than any bare frame of a two-axle freight bogie."""
-OVERHANG_LIMIT = 1.6
+_OVERHANG_LIMIT = 1.6
 """Longest tank, in pivot spacings; tank wagons reach 1.2 to 1.5, beyond that the ends leave the gauge in curves."""
-SHELL_MASS_PER_AREA = 7850.0 * 0.005
+_SHELL_MASS_PER_AREA = 7850.0 * 0.005
 """kg/m^2; a steel wall of 5 mm."""
 
 
@@ -41,8 +41,8 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
         "axle load in t",
         "operation",
         axle,
-        AXLE_LOAD_LIMIT,
-        f"Overload: each axle carries {axle:.1f} t; most lines end at {AXLE_LOAD_LIMIT} t (category D, EN 15528). "
+        _AXLE_LOAD_LIMIT,
+        f"Overload: each axle carries {axle:.1f} t; most lines end at {_AXLE_LOAD_LIMIT} t (category D, EN 15528). "
         "Check masses, liquid density and fill.",
     )
     frame = wagon.bogie.mass / 1e3
@@ -50,7 +50,7 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
         "mass of a bogie frame in t",
         "input",
         frame,
-        FRAME_LIMIT,
+        _FRAME_LIMIT,
         f"wagon.bogie.mass of {frame:.3g} t is that of a whole bogie, not of a frame without wheelsets (about 2 t); "
         f"the two wheelsets of {wagon.wheelset.mass / 1e3:.3g} t each are probably counted twice.",
     )
@@ -59,7 +59,7 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
         "length of the tank in pivot spacings",
         "input",
         overhang,
-        OVERHANG_LIMIT,
+        _OVERHANG_LIMIT,
         f"A tank {tank.length:.4g} m long on pivots {wagon.pivot_spacing:.4g} m apart overhangs them by "
         f"{0.5 * (tank.length - wagon.pivot_spacing):.3g} m at each end; no wagon does (usual: 1.2 to 1.5 spacings). "
         "Check tank.length and wagon.pivot_spacing.",
@@ -79,11 +79,11 @@ def shell_mass(scenario: Scenario) -> float:
     """Least mass (kg) of the tank's wall and ends in 5 mm of steel: a circle has the shortest outline of an area."""
     section = section_of(scenario.tank)
     area = section.area(section.height)
-    return SHELL_MASS_PER_AREA * (2.0 * math.sqrt(math.pi * area) * scenario.tank.length + 2.0 * area)
+    return _SHELL_MASS_PER_AREA * (2.0 * math.sqrt(math.pi * area) * scenario.tank.length + 2.0 * area)
 
 
 def _track_checks(scenario: Scenario) -> Iterator[Check]:
-    ends, elements = domain_errors(scenario)
+    ends, elements = _domain_errors(scenario)
     track, speed = scenario.track, _speed(scenario)
     margin = rail_reach.margin_for(track.rail, track.foundation, speed, rail_reach.TOLD)
     longer = math.ceil(_wheels(scenario) + 2.0 * margin)
@@ -106,7 +106,7 @@ def _track_checks(scenario: Scenario) -> Iterator[Check]:
     )
 
 
-def domain_errors(scenario: Scenario) -> tuple[float, float]:
+def _domain_errors(scenario: Scenario) -> tuple[float, float]:
     """Errors of the rail's deflection, as parts of it: by the ends of its domain, by the length of its elements."""
     wagon, track, speed = scenario.wagon, scenario.track, _speed(scenario)
     length, element = rail_reach.computed_lengths(track, wagon.bogie.wheelbase, wagon.pivot_spacing, speed)
@@ -146,7 +146,7 @@ def _wheels(scenario: Scenario) -> float:
 
 def residual_cause(scenario: Scenario, lifts: int) -> str:
     """What to do about a large energy residual: the cause that weighs most."""
-    ends, elements = domain_errors(scenario)
+    ends, elements = _domain_errors(scenario)
     if lifts:
         return (
             "wheels lifted and landed, and an undamped contact does not converge there; a braking distance does, loads "

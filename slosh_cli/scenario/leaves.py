@@ -38,7 +38,7 @@ class SIValue(float):
 
 
 @dataclass(frozen=True)
-class Check:
+class Judge:
     """What an annotation asks of a value before anything else looks at it."""
 
     def parse(self, value: object) -> Any:
@@ -65,7 +65,7 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Leaf(Check):
+class Leaf(Judge):
     """Base of the leaves: all that is asked of a single value."""
 
     def sample(self) -> str:

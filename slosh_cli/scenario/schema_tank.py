@@ -8,7 +8,7 @@ from pydantic import Discriminator, Field, Tag
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Alias, Aliased, Part
-from slosh_cli.scenario.leaves import Check, Count, Number, Quantity, Range
+from slosh_cli.scenario.leaves import Count, Judge, Number, Quantity, Range
 from slosh_cli.scenario.schema_polygon import Outline
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import Choice
@@ -58,7 +58,7 @@ class Coefficient(Part):
 
 
 @dataclass(frozen=True)
-class _ComputedOrGiven(Check):
+class _ComputedOrGiven(Judge):
     def parse(self, value: object) -> Any:
         if (isinstance(value, list | tuple) and value) or value == "computed":
             return value

@@ -11,14 +11,14 @@ from pydantic_core import core_schema
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Check, Leaf
+from slosh_cli.scenario.leaves import Judge, Leaf
 from slosh_cli.scenario.scalars import plain_scalar
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import Choice, all_of, one_of
 
 
 @dataclass(frozen=True)
-class Short(Check):
+class Short(Judge):
     """A part, or a union of parts, for which one of the words `known` may stand.
 
     With a `leaf` a single value may stand for it, too: `make` gives the part of the leaf's value, `called` says what

@@ -6,10 +6,10 @@ import math
 
 from slosh_cli.arrays import Cube
 from slosh_cli.compiled import inner_kernel, kernel
-from slosh_cli.method import BASE, DIAGONAL, END, GAMMA, MIDDLE, OUTER, START, step_extremes
+from slosh_cli.method import BASE, END, GAMMA, MIDDLE, START
+from slosh_cli.solver.booking import accept, copy_point
 from slosh_cli.solver.events import SHORTEST_STEP, keep_values, reached, read_values, shorter_step
-from slosh_cli.solver.ledger import KINETIC, balance, settle_losses, settle_residual, stored
-from slosh_cli.solver.record import interpolate
+from slosh_cli.solver.ledger import KINETIC, balance, stored
 from slosh_cli.solver.stage import prepare_stage, solve_stage
 from slosh_cli.solver.step import take_step
 from slosh_cli.solver.train import Train
@@ -29,26 +29,12 @@ _RESTART_STEP = 1e-3
 
 
 @inner_kernel
-def _copy_point(source, target):
-    copy(source.q, target.q)
-    copy(source.v, target.v)
-    copy(source.a, target.a)
-    copy(source.rail, target.rail)
-    copy(source.rail_rate, target.rail_rate)
-    copy(source.rail_second, target.rail_second)
-    copy(source.normal, target.normal)
-    copy(source.creep, target.creep)
-    copy(source.torque, target.torque)
-    copy(source.power, target.power)
-
-
-@inner_kernel
 def _make_consistent(train):
     """Accelerations and forces at the start that satisfy the equations as they are now (implicit step 0)."""
     vehicles = train.vehicles
     for k in range(len(vehicles)):
         vehicle, start = vehicles[k], vehicles[k].points[START]
-        _copy_point(start, vehicle.points[BASE])
+        copy_point(start, vehicle.points[BASE])
         vehicle.liquid.predict(START, 0.0, 0.0, 0.0)
         prepare_stage(vehicle, 0.0, start.v[0], start.a[0])
     solved = solve_stage(train, START, 0.0, train.time)
@@ -71,50 +57,10 @@ def _open_ledger(train):
 
 
 @inner_kernel
-def _settle_extremes(vehicle, step):
-    """Extremes and means that count from the onset on."""
-    account = vehicle.account
-    account.surface = max(account.surface, vehicle.liquid.highest())
-    if not vehicle.brake.is_on():
-        return
-    start, middle, end = vehicle.points[START].normal, vehicle.points[MIDDLE].normal, vehicle.points[END].normal
-    for i in range(start.size):
-        low, high = step_extremes(start[i], middle[i], end[i])
-        account.least[i] = min(account.least[i], max(low, 0.0))
-        account.largest[i] = max(account.largest[i], high)
-        mean = OUTER * (start[i] + middle[i]) + DIAGONAL * end[i]
-        account.load_seconds += step * mean
-        if vehicle.locked[i]:
-            account.locked_time[i] += step
-    account.seconds += step
-
-
-@inner_kernel
 def _has_room(train, rows, step):
     """Whether `rows` can take all rows of a step of `step` (s) and the end of the run."""
     needed = 1 + int((train.time + step - train.next_output) / train.control.interval)
     return train.rows + max(needed, 0) + 1 <= rows.shape[0]
-
-
-@kernel
-def record(train: Train, rows: Cube, step: float, part: float) -> None:
-    """Interpolate the step at its fraction `part` into the next of the `rows` (rows, vehicles, columns)."""
-    vehicles, residual = train.vehicles, (1.0 - part) * train.residual_before + part * train.residual
-    for k in range(len(vehicles)):
-        interpolate(vehicles[k], rows[train.rows, k], train.time, step, part, residual)
-    train.rows += 1
-
-
-@inner_kernel
-def _record_step(train, rows, step):
-    """Rows for the output instants within the step."""
-    time, interval = train.time, train.control.interval
-    while train.next_output <= time + step:
-        part = min(max((train.next_output - time) / step, 0.0), 1.0)
-        record(train, rows, step, part)
-        for k in range(rows.shape[1]):
-            rows[train.rows - 1, k, 0] = train.next_output
-        train.next_output = round(train.next_output / interval + 1.0) * interval
 
 
 @inner_kernel
@@ -131,40 +77,6 @@ def _apply_events(train):
         if reached(before[wheels + 1], after[wheels + 1]):
             switched, outcome = True, PITCH_LIMIT
     return switched, outcome
-
-
-@inner_kernel
-def _follow_contacts(vehicle):
-    """Count the wheels that left the rail or came back to it in the step in hand."""
-    for i in range(vehicle.wagon.wheels):
-        for stage in range(MIDDLE, END + 1):
-            if (vehicle.points[stage].normal[i] <= 0.0) != vehicle.airborne[i]:
-                vehicle.airborne[i] = not vehicle.airborne[i]
-                vehicle.account.lifted += 1
-
-
-@inner_kernel
-def _accept(train, rows, step):
-    """Book the step in hand."""
-    vehicles = train.vehicles
-    for k in range(len(vehicles)):
-        settle_losses(vehicles[k], step)
-    settle_residual(train)
-    _record_step(train, rows, step)
-    for k in range(len(vehicles)):
-        vehicle, account = vehicles[k], vehicles[k].account
-        _settle_extremes(vehicle, step)
-        _follow_contacts(vehicle)
-        vehicle.liquid.accept(step)
-        _copy_point(vehicle.points[END], vehicle.points[START])
-        copy(account.energies, account.energies_before)
-        copy(account.losses, account.losses_before)
-    train.residual_before = train.residual
-    train.time += step
-    train.middle_at = (GAMMA - 1.0) * step
-    train.steps += 1
-    if step > 2.0 * SHORTEST_STEP:
-        train.stalled = 0
 
 
 @inner_kernel
@@ -294,7 +206,7 @@ def _judge(train, rows, step, error):
     if not _finite(train):
         return NOT_FINITE
     begun = train.time
-    _accept(train, rows, step)
+    accept(train, rows, step)
     train.trying = 0.0
     train.next_step = _next_step(step, error, train.last_error, train.shortened > 0)
     train.last_error = error

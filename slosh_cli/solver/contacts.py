@@ -46,17 +46,6 @@ def _read_inputs(vehicle, point):
 
 
 @inner_kernel
-def _respond_bodies(scratch, accelerations):
-    """Accelerations of all bodies under the inputs in hand."""
-    response, inputs, free = scratch.response, scratch.inputs, scratch.free_bodies
-    for i in range(free.size):
-        total = free[i]
-        for k in range(inputs.size):
-            total += response[k, i] * inputs[k]
-        accelerations[i] = total
-
-
-@inner_kernel
 def _body_acceleration(scratch, row):
     """Acceleration of body `row` under the inputs in hand."""
     response, inputs = scratch.response, scratch.inputs
@@ -131,7 +120,7 @@ def _creep_input(vehicle, wheel, row):
 
 
 @inner_kernel
-def solve_changes(vehicle, step, along_gap):
+def _solve_changes(vehicle, step, along_gap):
     """Changes of wheel loads, acceleration along the track and creep forces that close the gaps.
 
     `scratch.load_gap` (wheels,) N, `along_gap` m/s^2 and `scratch.spin_gap` (wheels,) N m are what is missing in the
@@ -212,7 +201,7 @@ def _contact_gaps(vehicle, base, point, step, time):
 @inner_kernel
 def find_update(vehicle, point, step, time, first):
     """Newton's update of the stage's `point`, which is at `time` (s): it changes the acceleration along the track by
-    the value returned, the rest by what `solve_changes` leaves. The `first` one lets locked wheels stand."""
+    the value returned, the rest by what `_solve_changes` leaves. The `first` one lets locked wheels stand."""
     wagon = vehicle.wagon
     for i in range(wagon.wheels):
         if first and vehicle.locked[i]:
@@ -220,7 +209,7 @@ def find_update(vehicle, point, step, time, first):
     vehicle.account.newton += 1
     _contact_gaps(vehicle, vehicle.points[BASE], point, step, time)
     _linearise(vehicle, step)
-    return solve_changes(vehicle, step, vehicle.scratch.along_gap)
+    return _solve_changes(vehicle, step, vehicle.scratch.along_gap)
 
 
 @inner_kernel
@@ -232,7 +221,8 @@ def take_update(vehicle, point, step, change, first, tolerance):
     """
     wagon, scratch, scales, base = vehicle.wagon, vehicle.scratch, vehicle.scales, vehicle.points[BASE]
     _change_inputs(vehicle, step, change)
-    _respond_bodies(scratch, point.a)
+    for i in range(wagon.first_spin):
+        point.a[i] = _body_acceleration(scratch, i)
     size, load_size, crossed = abs(change) / scales.speed[0], 0.0, False
     for i in range(wagon.wheels):
         point.normal[i] += scratch.load_change[i]
@@ -258,7 +248,7 @@ def take_update(vehicle, point, step, change, first, tolerance):
 
 @inner_kernel
 def _change_inputs(vehicle, step, along):
-    """Add the changes that `solve_changes` found to the inputs; `along` is that of the acceleration."""
+    """Add the changes that `_solve_changes` found to the inputs; `along` is that of the acceleration."""
     wagon, scratch = vehicle.wagon, vehicle.scratch
     inputs, push = scratch.inputs, wagon.wheels
     inputs[push] -= step * scratch.resistance_slope * along
@@ -276,7 +266,7 @@ def respond(vehicle, step, accelerations):
     `scratch.spin_gap`; those of the spins follow."""
     wagon, scratch = vehicle.wagon, vehicle.scratch
     response, inputs = scratch.response, scratch.inputs
-    along = solve_changes(vehicle, step, accelerations[0])
+    along = _solve_changes(vehicle, step, accelerations[0])
     fill(inputs, 0.0)
     _change_inputs(vehicle, step, along)
     for i in range(wagon.first_spin):

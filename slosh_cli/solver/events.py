@@ -18,7 +18,7 @@ _LARGEST_PITCH = 0.1
 
 
 @inner_kernel
-def vehicle_values(vehicle, stage, time, values):
+def _vehicle_values(vehicle, stage, time, values):
     """Values of a vehicle's events at a stage, which is at `time` (s): of its wheels, of the creepage floor, of the
     pitch limit; `values` (wheels + 2,)."""
     wagon, point = vehicle.wagon, vehicle.points[stage]
@@ -31,7 +31,7 @@ def vehicle_values(vehicle, stage, time, values):
 
 
 @inner_kernel
-def speed_at(train, stage):
+def _speed_at(train, stage):
     """Mean speed (m/s) of the vehicles by their mass."""
     vehicles, total = train.vehicles, 0.0
     for k in range(len(vehicles)):
@@ -44,8 +44,8 @@ def read_values(train, stage, time):
     """Values of all events at a stage, which is at `time` (s)."""
     vehicles = train.vehicles
     for k in range(len(vehicles)):
-        vehicle_values(vehicles[k], stage, time, vehicles[k].account.values)
-    train.stop_values[1] = speed_at(train, stage) - train.control.stop_speed
+        _vehicle_values(vehicles[k], stage, time, vehicles[k].account.values)
+    train.stop_values[1] = _speed_at(train, stage) - train.control.stop_speed
 
 
 @inner_kernel

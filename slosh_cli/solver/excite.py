@@ -22,7 +22,7 @@ from slosh_cli.tank.modal import modal_liquid
 from slosh_cli.tank.shallow import WORK_ROWS
 from slosh_cli.tank.still import FlowingLiquid, TransverseWall, shallow_liquid
 
-WHOLE = 1.0
+_WHOLE = 1.0
 """Share of the tank that is modelled: all of it, where a wagon has half of it on each rail."""
 ACCURACY = 1e-7
 """Change of the histories, relative to their largest values, from one halving of the steps to the next that ends it."""
@@ -138,20 +138,22 @@ def extreme(values: Vector) -> float:
     return low if -low > high else high
 
 
-class ExcitedLiquid(SloshLiquid, FlowingLiquid, Protocol):
+class _ExcitedLiquid(SloshLiquid, FlowingLiquid, Protocol):
     """A scenario's liquid with all that its model needs."""
 
 
-class ExcitedTank(SloshTank, Protocol):
+class _ExcitedTank(SloshTank, Protocol):
     """A scenario's tank with such a liquid."""
 
     @property
-    def liquid(self) -> ExcitedLiquid: ...
+    def liquid(self) -> _ExcitedLiquid: ...
     @property
     def baffles(self) -> Sequence[TransverseWall]: ...
 
 
-def excite(tank: ExcitedTank, deceleration: Deceleration, duration: float = 40.0, interval: float = 0.01) -> Excitation:
+def excite(
+    tank: _ExcitedTank, deceleration: Deceleration, duration: float = 40.0, interval: float = 0.01
+) -> Excitation:
     """Move the tank, at rest and its liquid level at t = 0, through `duration` s; a row every `interval` s.
 
     Raises TankError where slosh modes cannot be computed, ValueError for a duration or an interval that is not
@@ -191,7 +193,7 @@ def _with_corners(deceleration: Deceleration, instants: Vector) -> Vector:
 
 
 def _excite_modes(
-    tank: ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
+    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
 ) -> Excitation:
     load = frozen_load(tank)
     rows, accuracy = _settled_history(slosh_modes(tank), deceleration, time)
@@ -223,7 +225,7 @@ def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, tim
 
     def history(halvings: int) -> Matrix:
         rows = np.zeros((ends.size, 3))
-        liquid = modal_liquid(modes, STANDARD_GRAVITY, WHOLE)
+        liquid = modal_liquid(modes, STANDARD_GRAVITY, _WHOLE)
         excite_kernels.modal_history(liquid, lengths, first, last, steps * 2**halvings, rows)
         return rows[wanted]
 
@@ -239,9 +241,9 @@ def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, tim
 
 
 def _excite_cells(
-    tank: ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
+    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
 ) -> Excitation:
-    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, WHOLE, columns=True)
+    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, _WHOLE, columns=True)
     borders = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
     ends = _with_corners(deceleration, np.union1d(time, borders))
     lengths = np.diff(ends)

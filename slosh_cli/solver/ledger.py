@@ -19,7 +19,7 @@ from slosh_cli.track.moving import rail_ledger
 from slosh_cli.vectors import fill
 from slosh_cli.wagon.model import CAR_PITCH
 
-KINETIC, ELASTIC, SLOSH = range(3)
+KINETIC, _ELASTIC, SLOSH = range(3)
 """Places in the stored energies."""
 
 
@@ -50,7 +50,7 @@ def balance(vehicle, stage, energies):
     power[RESISTANCE] = resistance * v[0]
     power[GRADIENT] = -ride.pull[stage] * (momentum_along + vehicle.liquid.momentum(ride, stage))
     energies[KINETIC] = kinetic + rail_kinetic + slosh_kinetic
-    energies[ELASTIC] = elastic - tilt + rail_elastic + _balance_contacts(vehicle, point)
+    energies[_ELASTIC] = elastic - tilt + rail_elastic + _balance_contacts(vehicle, point)
     energies[SLOSH] = gravity + tilt + slosh_potential
 
 
@@ -85,7 +85,7 @@ def settle_losses(vehicle, step):
 @inner_kernel
 def stored(energies):
     """What is stored, J."""
-    return energies[KINETIC] + energies[ELASTIC] + energies[SLOSH]
+    return energies[KINETIC] + energies[_ELASTIC] + energies[SLOSH]
 
 
 @inner_kernel

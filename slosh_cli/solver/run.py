@@ -12,8 +12,9 @@ import numpy as np
 from slosh_cli.arrays import Cube
 from slosh_cli.method import START
 from slosh_cli.solver import advance as loop
+from slosh_cli.solver.booking import record
 from slosh_cli.solver.record import columns_of
-from slosh_cli.solver.setup import Problem
+from slosh_cli.solver.setup import ReadyStop
 from slosh_cli.solver.train import Train
 from slosh_cli.solver.vehicle import FOUNDATION
 from slosh_cli.tank.cells import CellLiquid
@@ -21,15 +22,15 @@ from slosh_cli.tank.cells import CellLiquid
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
 
-WORK_PER_CALL = 100_000
+_WORK_PER_CALL = 100_000
 """Steps times nodes between two looks at progress and cancellation: 15 ms, long beside what a look costs."""
-NODES_PER_CELL = 8
+_NODES_PER_CELL = 8
 """Rail nodes that take the time of a cell of the liquid, more or less."""
-MOST_ROWS = 1 << 14
+_MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
 RINGING = loop.NOT_FINITE + 1
 """Outcome of a stop whose wheels landed on a track that did not take what they put into it."""
-SWALLOWED = 0.5
+_SWALLOWED = 0.5
 """It is one where the method took more than this part of what the foundation took."""
 
 
@@ -55,10 +56,10 @@ class Run:
     seconds: float
 
 
-def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel | None = None) -> Run:
+def integrate(problem: ReadyStop, progress: Progress | None = None, cancel: Cancel | None = None) -> Run:
     """Run the stop to its end. Raises Cancelled when `cancel` is set before that."""
     train = problem.train
-    buffer, steps = _buffer(train), max(WORK_PER_CALL // _work_per_step(train), 10)
+    buffer, steps = _buffer(train), max(_WORK_PER_CALL // _work_per_step(train), 10)
     filled: list[Cube] = []
     outcome = loop.advance(train, buffer, 0)  # loads or compiles the machine code before the clock starts
     began = time.perf_counter()
@@ -82,14 +83,14 @@ def integrate(problem: Problem, progress: Progress | None = None, cancel: Cancel
 def _work_per_step(train: Train) -> int:
     """Rail nodes of all vehicles, and what takes the time of as many."""
     cells = sum(v.liquid.shallow.cells for v in train.vehicles if isinstance(v.liquid, CellLiquid))
-    return sum(vehicle.rail.nodes for vehicle in train.vehicles) + NODES_PER_CELL * cells
+    return sum(vehicle.rail.nodes for vehicle in train.vehicles) + _NODES_PER_CELL * cells
 
 
 def _buffer(train: Train) -> Cube:
     """Rows to make room for at once: all up to the time limit, or many steps' worth; empty pages cost nothing."""
     control = train.control
     per_step = int(control.longest_step / control.interval) + 3
-    rows = max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, MOST_ROWS))
+    rows = max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, _MOST_ROWS))
     return np.empty((rows, len(train.vehicles), max(columns_of(vehicle).end for vehicle in train.vehicles)))
 
 
@@ -97,14 +98,14 @@ def _record_end(train: Train, buffer: Cube) -> None:
     """Add the end of the run as a row of its own, unless an output instant coincides with it."""
     interval = train.control.interval
     if abs(train.next_output - interval - train.time) >= 1e-9 * max(interval, train.time):
-        loop.record(train, buffer, 1.0, 0.0)
+        record(train, buffer, 1.0, 0.0)
 
 
 def _speed(train: Train) -> float:
     return float(sum(share * v.points[START].v[0] for share, v in zip(train.shares, train.vehicles, strict=True)))
 
 
-def _is_ringing(problem: Problem) -> bool:
+def _is_ringing(problem: ReadyStop) -> bool:
     """Whether waves of landing wheels stayed in the rail until steps too long for them took their energy.
 
     Without damping they run to and fro between the domain's ends, ever shorter, and shake the wheels that made them.
@@ -114,7 +115,7 @@ def _is_ringing(problem: Problem) -> bool:
     train = problem.train
     absorbed = sum(vehicle.account.losses[FOUNDATION] for vehicle in train.vehicles) / train.initial_kinetic
     lifted = any(vehicle.account.lifted for vehicle in train.vehicles)
-    return bool(lifted and -train.residual > max(problem.most_missing, SWALLOWED * absorbed))
+    return bool(lifted and -train.residual > max(problem.most_missing, _SWALLOWED * absorbed))
 
 
 def _fraction(train: Train) -> float:

@@ -51,7 +51,7 @@ _LEAST_MISSING = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class ReadyStop:
     """A stop ready to integrate: its train at t = 0, with accelerations still open."""
 
     train: Train
@@ -72,12 +72,12 @@ class Problem:
         return -float(wagon.weight[wagon.heaves].sum())
 
 
-def problem(scenario: Scenario) -> Problem:
+def problem(scenario: Scenario) -> ReadyStop:
     """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
     vehicle = _vehicle(scenario)
     most_missing = max(_LEAST_MISSING, scenario.solver.tolerance / 3)
     train = new_train((vehicle,), _control(scenario), _FIRST_STEP)
-    return Problem(train, vehicle.points[0].normal.copy(), most_missing)
+    return ReadyStop(train, vehicle.points[0].normal.copy(), most_missing)
 
 
 def _vehicle(scenario: Scenario) -> Vehicle:

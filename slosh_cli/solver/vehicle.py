@@ -100,7 +100,7 @@ class Scratch(Block):
     factored_acceleration: float
 
 
-class Account(Block):
+class _Account(Block):
     """What a vehicle sums up over a run, beside what it was before the step in hand.
 
     `energies` (3,) J: kinetic, elastic, gravity's and slosh; `losses` J, in the order of the ledger's. Since its onset,
@@ -147,7 +147,7 @@ class Vehicle(Block):
     ride: Ride
     locked: Flags
     airborne: Flags
-    account: Account
+    account: _Account
     scratch: Scratch
     rail_work: RailWork
     coupling_force: float
@@ -175,8 +175,8 @@ def _scratch(wagon: WagonModel) -> Scratch:
     )
 
 
-def _account(wheels: int) -> Account:
-    return Account.blank(
+def _account(wheels: int) -> _Account:
+    return _Account.blank(
         wheels,
         **{name: np.zeros(3) for name in ("energies_before", "energies")},
         **{name: np.zeros(LOSSES) for name in ("losses_before", "losses")},

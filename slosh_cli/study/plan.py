@@ -93,8 +93,8 @@ class Study:
         speed = parse_quantity(values[SPEED], "speed") if SPEED in values else braking.initial_speed
         torque = parse_quantity(values[TORQUE], "torque") if TORQUE in values else braking.torque
         return {
-            "v0_km_h": tidy(speed * 3.6),
-            "torque_kN_m": tidy(torque / 1e3),
+            "v0_km_h": _tidy(speed * 3.6),
+            "torque_kN_m": _tidy(torque / 1e3),
             "liquid": values.get(LIQUID, str(liquid.model)),
         }
 
@@ -174,6 +174,6 @@ def _describe(values: Mapping[str, str]) -> str:
     return ", ".join(f"{key} {value}" for key, value in values.items())
 
 
-def tidy(value: float) -> float:
+def _tidy(value: float) -> float:
     """Drop the rounding that a change of units leaves behind (80.00000000000001 km/h)."""
     return float(f"{value:.12g}")

@@ -35,7 +35,7 @@ _TELLING: Final = frozenset({"base", "vary"})
 
 
 @dataclass(frozen=True)
-class StudyFile:
+class _StudyFile:
     """A study as its file tells it: name, path of the base scenario, axes in the order of the file."""
 
     name: str
@@ -58,7 +58,7 @@ def is_study_file(path: Path) -> bool:
     return isinstance(data, dict) and not _TELLING.isdisjoint(data)
 
 
-def read_study_file(path: Path) -> StudyFile:
+def read_study_file(path: Path) -> _StudyFile:
     """Read a study file. Raises ScenarioError with every mistake and its line."""
     document = load_document(path)
     data = document.data if isinstance(document.data, dict) else {}
@@ -68,7 +68,7 @@ def read_study_file(path: Path) -> StudyFile:
             near = difflib.get_close_matches(str(key), KEYS, 1)
             fix = f"write `{near[0]}`" if near else f"take it out; the keys here are {', '.join(KEYS)}"
             reader.problem((key,), "is not a key of a study", f"`{key}`", fix)
-    study = StudyFile(reader.name(data), reader.base(data), reader.axes(data))
+    study = _StudyFile(reader.name(data), reader.base(data), reader.axes(data))
     if document.problems:
         raise ScenarioError(str(path), document.sorted_problems())
     return study

@@ -23,27 +23,18 @@ import math
 import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
-from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import END, GAMMA, MIDDLE, START
+from slosh_cli.tank.cell_state import Cells
 from slosh_cli.tank.liquid import Slosh
-from slosh_cli.tank.section_table import section_at
 from slosh_cli.tank.shallow import WORK_ROWS, ShallowLiquid, liquid_energy_in_tank, liquid_evolve
 from slosh_cli.tank.still import CellColumns
-from slosh_cli.vectors import copy, fill
+from slosh_cli.vectors import fill
 
 _LOOSE = 0.2
 """A push from the last acceleration will do while waves reach less than this part of what the wagon weighs."""
 _LEAST_CHANGE = 1e-3
 """The added mass is measured between two accelerations at least this far apart, m/s^2."""
-
-
-class Cells(Block):
-    """A shallow-water liquid at one instant: wetted area m^2, flow m^3/s and depth m of each cell, (cells,)."""
-
-    area: Vector
-    flow: Vector
-    depth: Vector
 
 
 class CellLiquid(Slosh):
@@ -94,7 +85,7 @@ class CellLiquid(Slosh):
         if not _mean_push(self, acceleration, step):
             return False, 0.0, 0.0
         lightness = self.by_force + centre * self.by_moment
-        heaviness = _reached_mass(liquid, self.start, step) * lightness
+        heaviness = self.start.reached_mass(liquid, step) * lightness
         if heaviness > _LOOSE:
             sums[0] = _whole_impulse(self, acceleration, step)
         paid_over = max(step, self.last_step)
@@ -144,14 +135,14 @@ class CellLiquid(Slosh):
         """Carry the liquid through the step as the tank moved; book what the push owes it and what bores took."""
         liquid, sums = self.shallow, self.sums
         centre, gravity, pitch = liquid.centre_height, liquid.gravity, ride.pitch
-        _copy_cells(self.start, self.end)
+        self.start.copy_to(self.end)
         cells = self.end
         area, flow, depth = cells.area, cells.flow, cells.depth
         before = ride.speed[START] + centre * ride.pitch_rate[START]
         halfway = ride.speed[MIDDLE] + centre * ride.pitch_rate[MIDDLE]
         after = ride.speed[END] + centre * ride.pitch_rate[END]
         kinetic, potential = liquid_energy_in_tank(liquid, area, flow, depth)
-        momentum = _momentum_in_tank(liquid, cells)
+        momentum = cells.momentum(liquid)
         fill(sums, 0.0)
         first = (halfway - before) / (GAMMA * step) - 0.5 * gravity * (pitch[START] + pitch[MIDDLE])
         second = (after - halfway) / ((1.0 - GAMMA) * step) - 0.5 * gravity * (pitch[MIDDLE] + pitch[END])
@@ -160,10 +151,10 @@ class CellLiquid(Slosh):
         given = 0.5 * step * (GAMMA * ride.pull[START] + ride.pull[MIDDLE] + (1.0 - GAMMA) * ride.pull[END])
         if not liquid_evolve(liquid, area, flow, depth, first, GAMMA * step, self.work, sums):
             return -1.0
-        momentum_halfway = _momentum_in_tank(liquid, cells)
+        momentum_halfway = cells.momentum(liquid)
         if not liquid_evolve(liquid, area, flow, depth, second, (1.0 - GAMMA) * step, self.work, sums):
             return -1.0
-        momentum_end = _momentum_in_tank(liquid, cells)
+        momentum_end = cells.momentum(liquid)
         impulse = momentum - momentum_end - liquid.mass * (after - before - given)
         last = self.following * (ride.acceleration[END] + centre * ride.pitch_acceleration[END])
         mean = self.following * ((after - before - given) / step)
@@ -175,7 +166,7 @@ class CellLiquid(Slosh):
         self.loss = sums[2] - (kinetic_end + potential_end - kinetic - potential)
         # the walls' pressures turn the tank about the still centre, the liquid feels nothing of it (theory section 10)
         mean_pitch, turn = 0.5 * (pitch[START] + pitch[END]), pitch[END] - pitch[START]
-        weights, weights_end = _weights_moment(liquid, self.start), _weights_moment(liquid, cells)
+        weights, weights_end = self.start.weights_moment(liquid), cells.weights_moment(liquid)
         centred = self.force + liquid.mass * gravity * mean_pitch
         apart = self.moment - 0.5 * (weights + weights_end) - centre * centred
         # what flows down the tilted bottom are the fluxes of mass, what gravity drives there are the cells' own flows
@@ -191,9 +182,9 @@ class CellLiquid(Slosh):
             cells = self.end
         pitch, speed = ride.pitch[stage], ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
         kinetic, potential = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
-        kinetic += speed * _momentum_in_tank(liquid, cells) + 0.5 * liquid.mass * speed * speed
+        kinetic += speed * cells.momentum(liquid) + 0.5 * liquid.mass * speed * speed
         tilt = 0.5 * liquid.mass * liquid.gravity * liquid.centre_height * pitch
-        return kinetic, potential - (_weights_moment(liquid, cells) + tilt) * pitch, 0.0
+        return kinetic, potential - (cells.weights_moment(liquid) + tilt) * pitch, 0.0
 
     @inner_kernel
     def momentum(self, ride, stage):
@@ -202,20 +193,19 @@ class CellLiquid(Slosh):
         if stage == END:
             cells = self.end
         speed = ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
-        return liquid.mass * speed + _momentum_in_tank(liquid, cells)
+        return liquid.mass * speed + cells.momentum(liquid)
 
     @inner_kernel
     def highest(self):
         """At the end of the step."""
-        front, rear = _rise(self.shallow, self.end)
-        return max(front, rear)
+        return max(self.end.rise(self.shallow))
 
     @inner_kernel
     def record(self, row, first, part, cubic, parabola):
         """Force and moment, means over the step, then the rise of the surface at the front and at the rear wall."""
         row[first], row[first + 1] = self.force, self.moment
-        front, rear = _rise(self.shallow, self.start)
-        front_end, rear_end = _rise(self.shallow, self.end)
+        front, rear = self.start.rise(self.shallow)
+        front_end, rear_end = self.end.rise(self.shallow)
         row[first + 2] = (1.0 - part) * front + part * front_end
         row[first + 3] = (1.0 - part) * rear + part * rear_end
 
@@ -227,7 +217,7 @@ class CellLiquid(Slosh):
     @inner_kernel
     def accept(self, step):
         """The end becomes the start; what is owed is left for the next step."""
-        _copy_cells(self.end, self.start)
+        self.end.copy_to(self.start)
         depth = self.end.depth
         for i in range(depth.size):
             self.deepest = max(self.deepest, depth[i])
@@ -254,68 +244,13 @@ def cell_liquid(
 
 
 @inner_kernel
-def _copy_cells(source, target):
-    copy(source.area, target.area)
-    copy(source.flow, target.flow)
-    copy(source.depth, target.depth)
-
-
-@inner_kernel
-def _momentum_in_tank(liquid, cells):
-    """Momentum (N s) of the liquid relative to the tank."""
-    flow, total = cells.flow, 0.0
-    for i in range(liquid.cells):
-        total += flow[i]
-    return total * liquid.density * liquid.spacing
-
-
-@inner_kernel
-def _weights_moment(liquid, cells):
-    """Moment (N m) of the liquid's weight about the tank's middle, nose-down."""
-    area, count, arm = cells.area, liquid.cells, 0.0
-    for i in range(count):
-        arm += area[i] * (i + 0.5 - 0.5 * count)
-    return liquid.density * liquid.gravity * liquid.spacing * liquid.spacing * arm
-
-
-@inner_kernel
-def _rise(liquid, cells):
-    """Rise (m) of the surface over the still level at the front and at the rear wall, at most to the roof."""
-    roof, still, depth = liquid.table.roof, liquid.still_depth, cells.depth
-    return min(depth[liquid.cells - 1], roof) - still, min(depth[0], roof) - still
-
-
-@inner_kernel
-def _reached_mass(liquid, cells, step):
-    """Mass (kg) that bears on walls and baffles when the tank's acceleration changes for `step` (s).
-
-    The mean force of that time is that of half the length which waves run. The surface's slope within a cell follows an
-    acceleration at once, so that half a cell counts in any step. A baffle counts by the part of a flow that it bars.
-    """
-    total = 0.0
-    for face in range(liquid.cells + 1):
-        wall = face in (0, liquid.cells) or liquid.loss[face] == math.inf
-        if not wall and liquid.loss[face] == 0.0:
-            continue
-        for cell in range(max(face - 1, 0), min(face + 1, liquid.cells)):
-            area, _, width = section_at(liquid.table, cells.depth[cell])
-            if area > 0.0:
-                wave = math.sqrt(liquid.gravity * area / width)
-                bars = 1.0
-                if not wall:
-                    bars -= 2.0 / (1.0 + math.sqrt(1.0 + liquid.loss[face] * abs(cells.flow[cell]) / (area * wave)))
-                total += bars * area * (liquid.spacing + step * wave)
-    return min(0.5 * liquid.density * total, liquid.mass)
-
-
-@inner_kernel
 def _mean_push(self, acceleration, step):
     """Carry the liquid through the step with the tank's constant `acceleration`: its impulses in `sums`.
 
     Returns False when it could not be carried through.
     """
     cells = self.end
-    _copy_cells(self.start, cells)
+    self.start.copy_to(cells)
     fill(self.sums, 0.0)
     return liquid_evolve(self.shallow, cells.area, cells.flow, cells.depth, acceleration, step, self.work, self.sums)
 
@@ -327,7 +262,7 @@ def _whole_impulse(self, acceleration, step):
     The walls' pressures miss a part of it in cells whose surface is steep, as the section's area is not linear there.
     """
     liquid = self.shallow
-    change = _momentum_in_tank(liquid, self.end) - _momentum_in_tank(liquid, self.start)
+    change = self.end.momentum(liquid) - self.start.momentum(liquid)
     return -change - liquid.mass * acceleration * step
 
 

@@ -36,7 +36,7 @@ class SloshMode:
         return self.lambda_02 / self.lambda_1
 
 
-class ModeValues(Protocol):
+class _ModeValues(Protocol):
     """A mode as a scenario gives it; same quantities and units as `SloshMode`."""
 
     @property
@@ -66,7 +66,7 @@ class SloshTank(LoadedTank, Protocol):
     @property
     def liquid(self) -> SloshLiquid: ...
     @property
-    def coefficients(self) -> Literal["computed"] | Sequence[ModeValues]: ...
+    def coefficients(self) -> Literal["computed"] | Sequence[_ModeValues]: ...
     @property
     def modes(self) -> int: ...
 

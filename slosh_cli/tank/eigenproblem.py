@@ -34,7 +34,7 @@ class Parity(IntEnum):
 
 
 @dataclass(frozen=True)
-class SurfaceModes:
+class _SurfaceModes:
     """The lowest modes of one wavenumber: `kappa` (m,) in 1/m, `potential` (unknowns, m) of unit mean square
     over the surface."""
 
@@ -104,7 +104,7 @@ class HalfSectionElements:
         """Weights for the integral of a field over the half surface."""
         return np.asarray(self.surface_mass @ np.ones(self.size), dtype=np.float64)
 
-    def modes(self, wavenumber: float, count: int = 1, parity: Parity = Parity.SYMMETRIC) -> SurfaceModes:
+    def modes(self, wavenumber: float, count: int = 1, parity: Parity = Parity.SYMMETRIC) -> _SurfaceModes:
         """The `count` lowest modes with `wavenumber` (1/m) along the tank.
 
         A symmetric problem with wavenumber 0 has the constant as a mode without frequency and is refused
@@ -123,7 +123,7 @@ class HalfSectionElements:
         kappa, potential = _lowest(operator, np.searchsorted(free, surface), mass, count)
         whole = np.zeros((self.size, count))
         whole[free] = potential
-        return SurfaceModes(kappa, whole)
+        return _SurfaceModes(kappa, whole)
 
 
 def _lowest(matrix: Any, surface: Ints, mass: Any, count: int) -> tuple[Floats, Floats]:

@@ -1,6 +1,6 @@
-"""What of an ideal liquid moves rigidly with its tank: added mass, and pitch inertia under a lid.
+"""What of an ideal liquid turns rigidly with its tank: its pitch inertia under a lid.
 
-Both are sums over the odd harmonics of `x = -sum 4/(L k^2) cos(k (x + L/2))`, k = n pi / L: one plane problem
+It is a sum over the odd harmonics of `x = -sum 4/(L k^2) cos(k (x + L/2))`, k = n pi / L: one plane problem
 `(d_yy + d_zz - k^2) phi = 0` over the wetted section each. The terms of highest k are summed from their limit
 for short waves, where only the neighbourhood of the boundary counts.
 """
@@ -20,29 +20,12 @@ from slosh_cli.tank.section import liquid_depth, section_of
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import HalfSection, half_section
 
-TOLERANCE = 1e-5
+_TOLERANCE = 1e-5
 """Change from one mesh to the next, as a share of the frozen load's value, below which refining ends."""
 
 _SHORT = 6.0  # wavenumber times the section's narrowest measure beyond which waves are short
 _MOST_SAMPLES = 24
 _MOST_UNKNOWNS = 150_000
-
-
-def added_mass(tank: LoadedTank) -> float:
-    """Mass in kg of the liquid that follows a sudden longitudinal push of the tank (phi = 0 on the surface).
-
-    With the slosh masses `lambda_1^2/mu` of all modes, transverse overtones included, it makes up the whole:
-    m_0 = m_l - (8 rho / L) sum (1/k^2) integral(chi) dA,  chi = 1 on the surface, d chi/dn = 0 on the wall.
-    Raises TankError where the section cannot be represented or the value does not settle.
-    """
-    half, length, mass = _half_of(tank), tank.length, frozen_load(tank).mass
-    scale, width = 8.0 * tank.liquid.density / length, 2.0 * half.half_width
-
-    def free_share(elements: HalfSectionElements, wavenumbers: Floats) -> float:
-        integrals = np.array([_below_open_surface(elements, float(k)) for k in wavenumbers])
-        return scale * _sum_over_harmonics(integrals * wavenumbers, wavenumbers, length, width, 3)
-
-    return mass - _settled(half, length, free_share, mass, held_surface=True)
 
 
 def stokes_joukowski_inertia(tank: LoadedTank) -> float:
@@ -61,23 +44,6 @@ def stokes_joukowski_inertia(tank: LoadedTank) -> float:
         return scale * _sum_over_harmonics(integrals, wavenumbers, length, area, 4)
 
     return frozen - _settled(half, length, slip, frozen)
-
-
-def free_masses(tank: LoadedTank, longitudinal: int, transverse: int) -> Floats:
-    """Slosh masses `lambda_1^2/mu` in kg of the modes n = 1, 3, ... and their overtones, (longitudinal, transverse).
-
-    The first column are the modes of the coefficients; the others, with nodes across the surface, take
-    part because their mean over the width is not zero unless the tank is rectangular.
-    """
-    half, length = _half_of(tank), tank.length
-    wavenumbers = (2.0 * np.arange(longitudinal) + 1.0) * math.pi / length
-    elements = HalfSectionElements(triangulate(half, float(wavenumbers[-1])).refined())
-    masses = np.empty((longitudinal, transverse))
-    for row, wavenumber in zip(masses, wavenumbers, strict=True):
-        solved = elements.modes(float(wavenumber), transverse)
-        over_surface = 2.0 * (elements.surface_of @ solved.potential)
-        row[:] = tank.liquid.density * (2.0 / wavenumber**2) ** 2 * solved.kappa * over_surface**2 / length
-    return masses
 
 
 def _half_of(tank: LoadedTank) -> HalfSection:
@@ -118,15 +84,15 @@ def _settled(
     whole: float,
     held_surface: bool = False,
 ) -> float:
-    """The value on a mesh so fine that its last refinement changed it by less than TOLERANCE of `whole`."""
+    """The value on a mesh so fine that its last refinement changed it by less than _TOLERANCE of `whole`."""
     wavenumbers = _sampled_wavenumbers(half, length)
     mesh = triangulate(half, float(wavenumbers[-1]), held_surface)
     elements = HalfSectionElements(mesh)
     value, change = value_on(elements, wavenumbers), math.inf
-    while change > TOLERANCE * whole:
+    while change > _TOLERANCE * whole:
         if elements.size > _MOST_UNKNOWNS:
             raise TankError(
-                f"the value must settle to {TOLERANCE:g} of the frozen load's, but still changes by "
+                f"the value must settle to {_TOLERANCE:g} of the frozen load's, but still changes by "
                 f"{change / whole:.1e} with {elements.size} unknowns"
             )
         mesh = mesh.refined()
@@ -134,17 +100,6 @@ def _settled(
         previous, value = value, value_on(elements, wavenumbers)
         change = abs(value - previous)
     return value
-
-
-def _below_open_surface(elements: HalfSectionElements, wavenumber: float) -> float:
-    """Integral over the section of the field that is 1 on the surface and has no flux through the wall."""
-    operator = (elements.stiffness + wavenumber**2 * elements.mass).tocsc()
-    field = np.zeros(elements.size)
-    field[elements.surface_unknowns] = 1.0
-    inner = np.setdiff1d(np.arange(elements.size), elements.surface_unknowns)
-    load = -(operator @ field)[inner]
-    field[inner] = factorised(operator[inner][:, inner])(load)
-    return 2.0 * float(elements.area_of @ field)
 
 
 def _slip_below_lid(elements: HalfSectionElements, wavenumber: float) -> float:

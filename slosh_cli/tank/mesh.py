@@ -117,7 +117,7 @@ class Boundary:
 
 
 @dataclass(frozen=True)
-class FiniteElementMesh:
+class _FiniteElementMesh:
     """The same triangles with straight edges and with edges bent to the wall, and the facets by side.
 
     Both number nodes, edges and unknowns alike.
@@ -178,7 +178,7 @@ class SectionMesh:
         sides = np.array([piece.side for piece in self.half.pieces])
         return np.asarray(sides[self.boundary.piece] == side, dtype=np.bool_)
 
-    def for_finite_elements(self) -> FiniteElementMesh:
+    def for_finite_elements(self) -> _FiniteElementMesh:
         """The mesh as scikit-fem takes it."""
         from skfem import MeshTri1, MeshTri2
 
@@ -188,7 +188,7 @@ class SectionMesh:
         places = curved.doflocs.copy()
         places[:, curved.dofs.facet_dofs[0, facet]] = self.boundary_middles().T
         sides = {side: facet[self.side_edges(side)] for side in Side}
-        return FiniteElementMesh(straight, replace(curved, doflocs=places), sides)
+        return _FiniteElementMesh(straight, replace(curved, doflocs=places), sides)
 
 
 def _row_of(sorted_rows: Ints, wanted: Ints) -> Ints:

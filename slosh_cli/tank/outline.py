@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-Point = tuple[float, float]
-Loop = tuple[Point, ...]
+_Point = tuple[float, float]
+Loop = tuple[_Point, ...]
 
 
 @dataclass(frozen=True)
-class AreaMoments:
+class _AreaMoments:
     """Area (m^2), first moment (m^3) and second moment (m^4) of a plane region, the moments about z = 0."""
 
     area: float
@@ -21,7 +21,7 @@ class AreaMoments:
     second: float
 
 
-def moments(loops: Sequence[Loop], level: float = 0.0) -> AreaMoments:
+def moments(loops: Sequence[Loop], level: float = 0.0) -> _AreaMoments:
     """Moments of the region inside counter-clockwise loops about the horizontal line z = `level` (Green)."""
     area = first = second = 0.0
     for loop in loops:
@@ -31,10 +31,10 @@ def moments(loops: Sequence[Loop], level: float = 0.0) -> AreaMoments:
             area += cross / 2.0
             first += cross * (a + b) / 6.0
             second += cross * (a * a + a * b + b * b) / 12.0
-    return AreaMoments(area, first, second)
+    return _AreaMoments(area, first, second)
 
 
-def counter_clockwise(points: Sequence[Point]) -> Loop:
+def counter_clockwise(points: Sequence[_Point]) -> Loop:
     """The same polygon, ordered so that its signed area is positive."""
     loop = tuple(points)
     return loop if moments([loop]).area >= 0.0 else loop[::-1]
@@ -62,7 +62,7 @@ def cut_right(points: Loop) -> tuple[Loop, ...]:
     return tuple(_without_repeats([(-z + 0.0, y) for y, z in part]) for part in cut_below(turned, 0.0))
 
 
-def _chains_below(loop: Loop, below: list[bool], level: float) -> list[list[Point]]:
+def _chains_below(loop: Loop, below: list[bool], level: float) -> list[list[_Point]]:
     """Runs of vertices below the level, each with its two crossing points at the ends."""
     count = len(loop)
     chains = []
@@ -79,7 +79,7 @@ def _chains_below(loop: Loop, below: list[bool], level: float) -> list[list[Poin
     return chains
 
 
-def _crossing(start: Point, end: Point, level: float) -> Point:
+def _crossing(start: _Point, end: _Point, level: float) -> _Point:
     (y1, z1), (y2, z2) = start, end
     if z1 == level:
         return start
@@ -88,7 +88,7 @@ def _crossing(start: Point, end: Point, level: float) -> Point:
     return (y1 + (y2 - y1) * (level - z1) / (z2 - z1), level)
 
 
-def _join(chains: list[list[Point]]) -> list[Loop]:
+def _join(chains: list[list[_Point]]) -> list[Loop]:
     """Close the chains along the cutting line.
 
     Run counter-clockwise, every chain starts at the left end of a wetted interval of the line and ends at the
@@ -103,7 +103,7 @@ def _join(chains: list[list[Point]]) -> list[Loop]:
     loops, unused = [], set(range(len(chains)))
     while unused:
         first = current = min(unused)
-        points: list[Point] = []
+        points: list[_Point] = []
         while True:
             points += chains[current]
             unused.discard(current)
@@ -116,7 +116,7 @@ def _join(chains: list[list[Point]]) -> list[Loop]:
     return loops
 
 
-def _without_repeats(points: Sequence[Point]) -> Loop:
+def _without_repeats(points: Sequence[_Point]) -> Loop:
     return tuple(point for point, before in zip(points, (points[-1], *points[:-1]), strict=True) if point != before)
 
 

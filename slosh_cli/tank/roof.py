@@ -17,9 +17,9 @@ from slosh_cli.tank.section_table import depth_of, full_level
 
 NEARLY_FULL = 0.6
 """Tanks filled less than that (depth over height) leave what strikes the roof to the slot alone."""
-ROOM = 0.02
+_ROOM = 0.02
 """What the slot held as a column formed goes back to the open surface, this part of the room in its cells at a time."""
-FULL = 1.0 - 1e-13
+_FULL = 1.0 - 1e-13
 """A cell holding this part of the whole section is full."""
 
 
@@ -30,14 +30,14 @@ def _stand_from(liquid, area, depth, wall, beyond, tilt, still):
     lid, full = full_level(table), table.full_area
     way = 1 if beyond > wall else -1
     end = wall
-    while end != beyond and area[end] >= FULL * full:
+    while end != beyond and area[end] >= _FULL * full:
         end += way
     if end in (beyond, wall):
         return
     if depth[end] + tilt < lid:
         end -= way
     target, i = end, end
-    room = ROOM * max(full - area[end], 0.0)
+    room = _ROOM * max(full - area[end], 0.0)
     while i != wall:
         i -= way
         still[i] = 1.0
@@ -49,7 +49,7 @@ def _stand_from(liquid, area, depth, wall, beyond, tilt, still):
             if room <= 0.0:
                 depth[target] = depth_of(table, area[target])
                 target += way
-                room = ROOM * max(full - area[target], 0.0) if target != beyond else 0.0
+                room = _ROOM * max(full - area[target], 0.0) if target != beyond else 0.0
     if target != beyond:
         depth[target] = depth_of(table, area[target])
     i = wall

@@ -14,9 +14,9 @@ from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
 from slosh_cli.tank.section import PolygonalSection, Section
 
-NODES = 400
+_NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""
-BINS = 1024
+_BINS = 1024
 """Equal parts of depth and area that tell where the search for a node starts."""
 LEDGE = 1e-9
 """Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
@@ -28,8 +28,8 @@ class SectionTable(Block):
     The roof is at `roof` (m); up to there the section holds `full_area` (m^2).
 
     `area` m^2, `width` m, `first` = INT z b dz m^3, `pressure` = INT (h - z) b dz m^3 (the moment I1 of the
-    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `depth_start`, `area_start` (BINS + 1,): the last
-    node not beyond the start of each of as many equal parts of depth and area.
+    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `depth_start`, `area_start` (_BINS + 1,): the
+    last node not beyond the start of each of as many equal parts of depth and area.
     """
 
     depth: Vector
@@ -55,7 +55,7 @@ def _slot_start(section: Section, slot_width: float) -> float:
 
 def _nodes(section: Section, top: float) -> Vector:
     """Depths (m) of the table up to `top`; a polygon's corners are among them, so that no interval has one inside."""
-    depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, NODES)))
+    depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, _NODES)))
     if not isinstance(section, PolygonalSection):
         return depth
     beside = LEDGE * section.height
@@ -67,7 +67,7 @@ def _nodes(section: Section, top: float) -> Vector:
 
 def _starts(places: Vector) -> Integers:
     """Last node not beyond the start of each bin, one bin early so that rounding cannot pass it by."""
-    edges = np.linspace(0.0, float(places[-1]), BINS + 1)
+    edges = np.linspace(0.0, float(places[-1]), _BINS + 1)
     found = np.searchsorted(places, edges, side="right") - 1
     return np.asarray(np.maximum(found - 1, 0), dtype=np.int64)
 

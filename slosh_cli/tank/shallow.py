@@ -18,9 +18,9 @@ from slosh_cli.tank.shallow_flux import fluxes
 
 COURANT = 0.45
 """A step carries no wave further than this part of a cell."""
-MOST_COURANT = 0.5
+_MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
-SHORTEST_STEP = 1e-7
+_SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
 WORK_ROWS = 18
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
@@ -155,7 +155,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
         speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
         limit = _longest_step(liquid, speed, acceleration, COURANT)
         while True:
-            if not limit > SHORTEST_STEP:
+            if not limit > _SHORTEST_STEP:
                 return False
             step = remaining / math.ceil(remaining / limit)
             share = step / limit
@@ -165,7 +165,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             speed = fluxes(
                 liquid, area_1, flow_1, depth_1, still_1, acceleration, work, mass_2, momentum_2, source_2, push_2
             )
-            longest = _longest_step(liquid, speed, acceleration, MOST_COURANT)
+            longest = _longest_step(liquid, speed, acceleration, _MOST_COURANT)
             if step <= longest:
                 break
             limit = min(longest, 0.9 * step)

@@ -15,9 +15,9 @@ from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
 
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
-STILL = 1e-2
+_STILL = 1e-2
 """A liquid slower than this part of its waves' speed is more and more taken for still."""
-STEEPENED, MILD = 1.2, 0.5
+STEEPENED, _MILD = 1.2, 0.5
 """Slopes may be this much steeper than minmod's in waves whose slope, drawn out over the whole tank, would change depth
 and speed by much less than this part of the depth and of the waves' speed: minmod wears small waves down, but is the
 steadiest at bores."""
@@ -66,7 +66,7 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
 
     Closed bulkheads and columns at rest (`still`) are walls.
     """
-    cells, mild, loss, gravity, table = liquid.cells, MILD / liquid.cells, liquid.loss, liquid.gravity, liquid.table
+    cells, mild, loss, gravity, table = liquid.cells, _MILD / liquid.cells, liquid.loss, liquid.gravity, liquid.table
     tilt = acceleration * liquid.spacing / gravity
     last = table.area.size - 1
     dry, roof = DRY * table.area[last], table.depth[last]
@@ -94,7 +94,7 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
         # force jumps at no acceleration. A still liquid's surface may
         room = 2.0 * max(abs(depth[i] - roof) - LEDGE * roof, 0.0)
         if abs(slope_depth[i]) > room and area[i] > dry:
-            flowing = min((flow[i] / area[i]) ** 2 / (STILL * STILL * gravity * depth[i]), 1.0)
+            flowing = min((flow[i] / area[i]) ** 2 / (_STILL * _STILL * gravity * depth[i]), 1.0)
             slope_depth[i] += flowing * (math.copysign(room, slope_depth[i]) - slope_depth[i])
         # neither end of a cell lies below the bed
         slope_depth[i] = min(max(slope_depth[i], -2.0 * depth[i]), 2.0 * depth[i])

@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
@@ -17,7 +17,6 @@ from slosh_cli.tank.section import section_of
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.tank.shallow import ShallowLiquid
 
-Array = NDArray[np.float64]
 CellColumns = tuple[Array, Array, Array]
 """Area m^2, flow m^3/s and depth m of every cell."""
 
@@ -46,7 +45,7 @@ class TransverseWall(Protocol):
         """Open part of its area; 0: a closed bulkhead."""
 
 
-class FlowingTank(LoadedTank, Protocol):
+class _FlowingTank(LoadedTank, Protocol):
     """A scenario's tank with such a liquid."""
 
     @property
@@ -59,7 +58,7 @@ class FlowingTank(LoadedTank, Protocol):
 
 
 def shallow_liquid(
-    tank: FlowingTank, gravity: float, share: float, columns: bool = False
+    tank: _FlowingTank, gravity: float, share: float, columns: bool = False
 ) -> tuple[ShallowLiquid, CellColumns]:
     """Constants for the `share` (0.5: one rail's half) of the tank's liquid, and its cells, level and at rest.
 
@@ -83,14 +82,14 @@ def shallow_liquid(
     return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
 
 
-def longest_section(tank: FlowingTank) -> float:
+def longest_section(tank: _FlowingTank) -> float:
     """Length (m) of the longest part of the tank between end walls and closed bulkheads."""
     faces = [place for place, loss in enumerate(_baffle_losses(tank)) if math.isinf(loss)]
     cells = tank.liquid.cells
     return max(end - start for start, end in pairwise([0, *faces, cells])) / cells * tank.length
 
 
-def frequency_excess(tank: FlowingTank, gravity: float) -> float:
+def frequency_excess(tank: _FlowingTank, gravity: float) -> float:
     """How much too high shallow water's first frequency is, by potential flow in this very section.
 
     It is that of the longest part between closed bulkheads. Where the section has no finite-element mesh, that of a box
@@ -119,7 +118,7 @@ def baffle_loss(opening: float) -> float:
     return float((1 + 0.707 * np.sqrt(1 - opening) - opening) ** 2 / opening**2)
 
 
-def _baffle_losses(tank: FlowingTank) -> Array:
+def _baffle_losses(tank: _FlowingTank) -> Array:
     """Loss coefficients at the faces between cells (cells + 1,)."""
     losses = np.zeros(tank.liquid.cells + 1)
     for baffle in tank.baffles:

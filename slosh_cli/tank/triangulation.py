@@ -22,7 +22,7 @@ _CLOSEST = 0.35  # of the wanted size: no two points are put closer to each othe
 _FLAT = 1e-10  # twice the area over the longest edge squared: what rounding makes of points in a line
 _PASSES = 100
 
-Edge = tuple[int, int, int, float, float]  # two points, boundary piece, the points' parameters on it
+_Edge = tuple[int, int, int, float, float]  # two points, boundary piece, the points' parameters on it
 
 
 def triangulate(half: HalfSection, wavenumber: float, held_surface: bool = False) -> SectionMesh:
@@ -49,7 +49,7 @@ class _Draft:
     half: HalfSection
     size: ElementSize
     points: list[tuple[float, float]] = field(default_factory=list)
-    edges: list[Edge] = field(default_factory=list)
+    edges: list[_Edge] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         for piece in self.half.pieces:
@@ -58,7 +58,7 @@ class _Draft:
             following = (index + 1) % len(self.half.pieces)
             self._divide((index, following, index, piece.start, piece.end))
 
-    def _divide(self, edge: Edge) -> None:
+    def _divide(self, edge: _Edge) -> None:
         """Halve an edge until it is as short as wanted and nearly straight."""
         piece = self.half.pieces[edge[2]]
         ends = np.array([self.points[edge[0]], self.points[edge[1]]])
@@ -70,7 +70,7 @@ class _Draft:
         for part in self._halves(edge):
             self._divide(part)
 
-    def _halves(self, edge: Edge) -> tuple[Edge, Edge]:
+    def _halves(self, edge: _Edge) -> tuple[_Edge, _Edge]:
         first, last, piece, start, end = edge
         middle = (start + end) / 2.0
         self.points.append(self.half.pieces[piece].point(middle))

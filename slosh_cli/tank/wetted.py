@@ -29,7 +29,7 @@ class Side(IntEnum):
 
 
 @dataclass(frozen=True)
-class Piece:
+class _Piece:
     """A straight or elliptical piece of the boundary, run from parameter `start` to `end`.
 
     Straight pieces go from one corner to the other; on an elliptical one the parameter is the angle from the
@@ -65,7 +65,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Corner:
+class _Corner:
     """A corner of the boundary: place (m), interior angle (rad), whether it lies on the free surface."""
 
     y: float
@@ -79,7 +79,7 @@ class Corner:
 class HalfSection:
     """The wetted half section: boundary pieces run counter-clockwise, and its exact area (m^2)."""
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[_Piece, ...]
     area: float
     depth: float
 
@@ -88,14 +88,14 @@ class HalfSection:
         """Width of the half's free surface, m."""
         return sum(abs(p.last[0] - p.first[0]) for p in self.pieces if p.side is Side.SURFACE)
 
-    def corners(self) -> tuple[Corner, ...]:
+    def corners(self) -> tuple[_Corner, ...]:
         """All corners, with the interior angle between the pieces that meet there."""
         found = []
         for before, after in zip((self.pieces[-1], *self.pieces[:-1]), self.pieces, strict=True):
             turn = after.direction(after.start) - before.direction(before.end)
             angle = math.pi - math.remainder(turn, 2.0 * math.pi)
             sides = {before.side, after.side}
-            found.append(Corner(*after.first, angle, Side.SURFACE in sides, Side.SYMMETRY in sides))
+            found.append(_Corner(*after.first, angle, Side.SURFACE in sides, Side.SYMMETRY in sides))
         return tuple(found)
 
 
@@ -119,14 +119,14 @@ def half_section(section: Section, depth: float) -> HalfSection:
     return HalfSection(pieces, section.area(depth) / 2.0, depth)
 
 
-def _elliptical_pieces(section: EllipticalSection, depth: float) -> tuple[Piece, ...]:
+def _elliptical_pieces(section: EllipticalSection, depth: float) -> tuple[_Piece, ...]:
     angle = section.half_angle(depth)
     bottom, contact, middle = (0.0, 0.0), (section.surface_width(depth) / 2.0, depth), (0.0, depth)
-    wall = Piece(Side.WALL, bottom, contact, 0.0, angle, (section.half_width, section.half_height))
-    return wall, Piece(Side.SURFACE, contact, middle), Piece(Side.SYMMETRY, middle, bottom)
+    wall = _Piece(Side.WALL, bottom, contact, 0.0, angle, (section.half_width, section.half_height))
+    return wall, _Piece(Side.SURFACE, contact, middle), _Piece(Side.SYMMETRY, middle, bottom)
 
 
-def _polygonal_pieces(section: PolygonalSection, depth: float) -> tuple[Piece, ...]:
+def _polygonal_pieces(section: PolygonalSection, depth: float) -> tuple[_Piece, ...]:
     _require_symmetry(section)
     points = _snapped(section, depth)
     halves = [half for part in cut_below(points, depth) for half in cut_right(part)]
@@ -171,18 +171,18 @@ def _snapped(section: PolygonalSection, depth: float) -> Loop:
     )
 
 
-def _straight_pieces(loop: Loop, depth: float, surface: tuple[float, float]) -> tuple[Piece, ...]:
+def _straight_pieces(loop: Loop, depth: float, surface: tuple[float, float]) -> tuple[_Piece, ...]:
     """The sides of a half polygon; a side at the surface's height is surface only where liquid meets air."""
     left, right = surface
     pieces = []
     for first, last in zip(loop, (*loop[1:], loop[0]), strict=True):
         if first[0] == 0.0 == last[0]:
-            pieces.append(Piece(Side.SYMMETRY, first, last))
+            pieces.append(_Piece(Side.SYMMETRY, first, last))
         elif first[1] == depth == last[1]:  # runs right to left
             inner = [(y, depth) for y in (right, left) if last[0] < y < first[0]]
             for one, two in zip((first, *inner), (*inner, last), strict=True):
                 open_here = left < (one[0] + two[0]) / 2.0 < right
-                pieces.append(Piece(Side.SURFACE if open_here else Side.WALL, one, two))
+                pieces.append(_Piece(Side.SURFACE if open_here else Side.WALL, one, two))
         else:
-            pieces.append(Piece(Side.WALL, first, last))
+            pieces.append(_Piece(Side.WALL, first, last))
     return tuple(pieces)

@@ -16,7 +16,7 @@ from slosh_cli.blocks import Block
 from slosh_cli.scenario import Track
 from slosh_cli.track.banded import END, ENTRIES, FIRST, factor_rows, solve_four
 
-MASS, TENSION, DRIFT, BENDING, TWIST, FORMS = range(0, 6 * ENTRIES, ENTRIES)
+MASS, TENSION, DRIFT, BENDING, TWIST, _FORMS = range(0, 6 * ENTRIES, ENTRIES)
 """Where each form's entries begin in `RailModel.forms`."""
 
 
@@ -138,7 +138,7 @@ def critical_speed(rail: RailModel) -> float:
 
 def steady_rows(rail: RailModel, speed: float) -> Vector:
     """Rows (r, 12) of the K of theory section 6 at constant `speed` (m/s)."""
-    mass, stretch, drift, bend, twist = np.split(rail.forms, FORMS // ENTRIES, axis=1)
+    mass, stretch, drift, bend, twist = np.split(rail.forms, _FORMS // ENTRIES, axis=1)
     tension = rail.shear_stiffness - rail.mass * speed**2
     return (
         rail.bending_stiffness * bend

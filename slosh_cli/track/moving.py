@@ -24,7 +24,7 @@ from slosh_cli.track.banded import (
 from slosh_cli.track.mem import BENDING, DRIFT, MASS, TENSION, TWIST, RailModel, unit_loads
 
 # places in the rows of a rail's matrices
-STAGE, DAMPING, STIFFNESS, MATRICES = range(0, 4 * ENTRIES, ENTRIES)
+_STAGE, _DAMPING, _STIFFNESS, MATRICES = range(0, 4 * ENTRIES, ENTRIES)
 
 
 @vector_kernel
@@ -43,8 +43,8 @@ def _matrices(rail, step, speed, acceleration, rows):
             damping = loss * mass + shear_loss * stretch + twice * convection
             stiffness = foundation * mass + tension * stretch + drift * convection
             stiffness += bending * form[BENDING + k] + twist * form[TWIST + k]
-            row[STAGE + k] = inertia * mass + step * (damping + step * stiffness)
-            row[DAMPING + k], row[STIFFNESS + k] = damping, stiffness
+            row[_STAGE + k] = inertia * mass + step * (damping + step * stiffness)
+            row[_DAMPING + k], row[_STIFFNESS + k] = damping, stiffness
 
 
 class RailWork(Block):
@@ -111,7 +111,7 @@ def rail_residual(rail, y, rate, second, step, speed, acceleration, rows, residu
     runs = rail.runs
     for k in range(runs.shape[0]):
         run, row = runs[k], rows[k]
-        stage, damping, stiffness = entries(row, STAGE), entries(row, DAMPING), entries(row, STIFFNESS)
+        stage, damping, stiffness = entries(row, _STAGE), entries(row, _DAMPING), entries(row, _STIFFNESS)
         first, first_before, first_after = run[FIRST], run[BEFORE], run[AFTER]
         for i in range(run[END] - first):
             before, here, after = first_before + i, first + i, first_after + i

@@ -79,7 +79,7 @@ def read_case(name: str) -> CaseData:
     )
 
 
-def read_table(name: str) -> list[dict[str, str]]:
+def data_rows(name: str) -> list[dict[str, str]]:
     """Rows of ``data/<name>`` (CSV with a heading; lines that start with # are remarks)."""
     import csv
 

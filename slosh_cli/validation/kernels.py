@@ -26,7 +26,7 @@ def creep_force(model: ContactModel, normal: float, slip: float, speed: float) -
     return float(contact.creep_force(normal, slip, speed)[0])
 
 
-def rail_residual(rail: RailModel, y: Vector, speed: float) -> Vector:
+def residual_forces(rail: RailModel, y: Vector, speed: float) -> Vector:
     """Nodal forces (2 n,) that hold the rail in the steady shape `y` (2 n,) at constant `speed` in m/s."""
     kernel: Any = moving.rail_residual
     still, residual = np.zeros_like(y), np.zeros_like(y)

@@ -68,7 +68,7 @@ def _unit(index: int) -> Vector:
     return row
 
 
-def car_at_height(wagon: Wagon, height: float) -> Vector:
+def _car_at_height(wagon: Wagon, height: float) -> Vector:
     """Row of the longitudinal displacement of the car at `height` (m) above the rail head (theory section 2)."""
     pivot_arm = 0.5 * (wagon.traction_height - wagon.wheelset.wheel_radius)
     return (
@@ -98,7 +98,7 @@ def _mass_matrix(wagon: Wagon, tank_row: Vector, load: FrozenLoad, carried: bool
     car = wagon.car_body
     load_row = tank_row + load.centre_height * _unit(CAR_PITCH)
     terms = [
-        (car.mass, car_at_height(wagon, car.centre_height)),
+        (car.mass, _car_at_height(wagon, car.centre_height)),
         (car.mass, _unit(CAR_HEAVE)),
         (car.pitch_inertia, _unit(CAR_PITCH)),
         (load.mass if carried else 0.0, load_row),
@@ -157,7 +157,7 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
     A load that is not `carried` along x has a motion of its own there: its longitudinal inertia and its weight's part
     in the car's pitch are then left to the liquid (theory section 10).
     """
-    tank_row = car_at_height(wagon, tank_bottom_height)
+    tank_row = _car_at_height(wagon, tank_bottom_height)
     mass = _mass_matrix(wagon, tank_row, load, carried)
     stiffness, damping = _suspension_matrices(wagon)
     gravity_stiffness = -0.5 * load.mass * STANDARD_GRAVITY * load.centre_height if carried else 0.0
@@ -174,8 +174,8 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
         stiffness=stiffness,
         weight=_weight(wagon, load),
         tank_row=tank_row,
-        car_row=car_at_height(wagon, wagon.car_body.centre_height),
-        coupling_row=car_at_height(wagon, COUPLING_HEIGHT),
+        car_row=_car_at_height(wagon, wagon.car_body.centre_height),
+        coupling_row=_car_at_height(wagon, COUPLING_HEIGHT),
         tank_push=np.asarray(np.linalg.solve(mass, tank_row), dtype=np.float64),
         tank_turn=np.asarray(np.linalg.solve(mass, _unit(CAR_PITCH)), dtype=np.float64),
         gravity_stiffness=gravity_stiffness,

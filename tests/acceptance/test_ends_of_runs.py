@@ -1,4 +1,4 @@
-"""How a run can end, and that what it says about it is consistent (theory section 8, interface: status)."""
+"""How a run can end, and that what it says about it is consistent (theory section 8)."""
 
 import numpy as np
 import pytest

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 from slosh_cli.errors import UsageError
-from slosh_cli.results.answers import Answers, Line, PerWheel, Place, Shown, computed, derived
+from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
 from slosh_cli.results.channels import CHANNELS
 from slosh_cli.results.hdf5 import read_history, write_history
 from slosh_cli.results.result import Record, Result
@@ -93,7 +93,7 @@ def test_no_two_lines_of_the_terminal_claim_the_same_place() -> None:
 class Extended(Result):
     """A run with one more answer: that line is all that any output needs."""
 
-    worst_jerk_m_s3: float = computed("m/s^3", "largest jerk", line=Line(12, "jerk, largest", ".1f", "m/s^3"))
+    worst_jerk_m_s3: float = computed("m/s^3", "largest jerk", line=Told(12, "jerk, largest", ".1f", "m/s^3"))
 
 
 @pytest.fixture

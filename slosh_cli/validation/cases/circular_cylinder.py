@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from slosh_cli.scenario import HorizontalCylinder, Liquid
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank import coefficients
 from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
 from slosh_cli.tank.section import EllipticalSection
@@ -12,8 +13,7 @@ from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
-from slosh_cli.validation.data_file import CaseData, read_table
-from slosh_cli.validation.exact.tank import GRAVITY
+from slosh_cli.validation.data_file import CaseData, data_rows
 from slosh_cli.validation.exact.wagon import segment_area
 
 
@@ -21,7 +21,7 @@ def compute(data: CaseData) -> Outcome:
     """The same elements, across the tank instead of along it; then the longitudinal mode of a very long tank."""
     found = Findings(data)
     table = [
-        (float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in read_table("transverse_modes.csv")
+        (float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in data_rows("transverse_modes.csv")
     ]
     computed = []
     for depth, published in table:
@@ -38,7 +38,8 @@ def compute(data: CaseData) -> Outcome:
         width = 2 * radius * sqrt(1 - (1 - 2 * fill) ** 2)
         area = segment_area(radius, fill)
         name = f"{length:g} m long tank, fill {fill:g}"
-        found.compare(f"omega, {name} / rad/s", mode.frequency, pi / length * sqrt(GRAVITY * area / width), "long_wave")
+        wave = sqrt(STANDARD_GRAVITY * area / width)
+        found.compare(f"omega, {name} / rad/s", mode.frequency, pi / length * wave, "long_wave")
         # of a shallow layer the surface moves 8/pi^2, and lambda_1 needs no more than the surface's width
         found.compare(
             f"lambda_1, {name} / kg", mode.lambda_1, -2 * tank.liquid.density * width * (length / pi) ** 2, "lambda_1"

@@ -10,23 +10,23 @@ from slosh_cli.track import mem
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
-from slosh_cli.validation.exact.paper_track import WHEELS, at, beam, paper_track, steady_deflections
+from slosh_cli.validation.exact.paper_track import WHEEL_PLACES, at, beam, paper_track, steady_deflections
 from slosh_cli.validation.runs import scenario
 
-SHARES = np.linspace(0.3, 0.9, 7)
-ELEMENT_LENGTH = 0.25
-LONG = 160.0
+_SHARES = np.linspace(0.3, 0.9, 7)
+_ELEMENT_LENGTH = 0.25
+_LONG = 160.0
 
 
 def compute(data: CaseData) -> Outcome:
     """The formula beside the slowest free wave; where 1/y^2 of the elements vanishes; what the solver accepts."""
     found, panels = Findings(data), []
     for shear in data.reference["shear_stiffness"]:
-        track = paper_track(ELEMENT_LENGTH, LONG, shear_stiffness=shear)
+        track = paper_track(_ELEMENT_LENGTH, _LONG, shear_stiffness=shear)
         waves = beam(track).critical_speed
-        formula = mem.critical_speed(mem.rail_model(track, WHEELS))
+        formula = mem.critical_speed(mem.rail_model(track, WHEEL_PLACES))
         found.compare(f"critical speed, {shear:g} N shear layer / m/s", formula, waves, "formula")
-        speeds = SHARES * waves
+        speeds = _SHARES * waves
         under = np.array([at(*steady_deflections(track, float(v)), 0.0) for v in speeds])
         # 1/y0^2 = 4 k (V_cr^2 - V^2) m falls to zero in a straight line over V^2
         slope, offset = np.polyfit(speeds**2, under**-2.0, 1)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.result import Result
 from slosh_cli.validation.case import Findings, Outcome
@@ -13,8 +13,6 @@ from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.exact.quadrature import integral
 from slosh_cli.validation.exact.wagon import point_wagon
 from slosh_cli.validation.runs import runnable, stop
-
-Array = NDArray[np.float64]
 
 
 def compute(data: CaseData) -> Outcome:

@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.result import Result
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
-from slosh_cli.validation.data_file import CaseData, read_table
+from slosh_cli.validation.data_file import CaseData, data_rows
 from slosh_cli.validation.runs import stop
 
-Array = NDArray[np.float64]
 HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 
 
 def compute(data: CaseData) -> Outcome:
     """Each claim by its numbers, with the printed coefficients and with computed ones."""
     found = Findings(data)
-    claims = {row["id"]: row["claim"] for row in read_table("claims.csv")}
+    claims = {row["id"]: row["claim"] for row in data_rows("claims.csv")}
     solid = stop("paper-80-solid")
     for words, changes in data.reference["coefficients"].items():
         liquid = stop("paper-80-liquid", *changes)

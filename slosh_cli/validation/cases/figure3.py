@@ -15,7 +15,7 @@ from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
 
-Rows = Sequence[Mapping[str, Any]]
+_Rows = Sequence[Mapping[str, Any]]
 
 
 def compute(data: CaseData) -> Outcome:
@@ -36,7 +36,7 @@ def compute(data: CaseData) -> Outcome:
     return found.outcome(Chart([_panel(tables, speed) for speed in (80.0, 160.0)]))
 
 
-def _small_torques(found: Findings, words: str, rows: Rows) -> None:
+def _small_torques(found: Findings, words: str, rows: _Rows) -> None:
     """Where nothing locks and linear theory holds, liquid and solid must stop in the same distance, nearly."""
     distance = {(row["v0_km_h"], row["torque_kN_m"], row["liquid"]): row.get("braking_distance_m") for row in rows}
     for speed in (80.0, 160.0):
@@ -45,7 +45,7 @@ def _small_torques(found: Findings, words: str, rows: Rows) -> None:
         found.compare(f"distance, liquid over solid, {speed:g} km/h, 2.5 kN m, {words}", ratio, 1.0, "small_torque")
 
 
-def _panel(tables: Mapping[str, Rows], speed: float) -> Panel:
+def _panel(tables: Mapping[str, _Rows], speed: float) -> Panel:
     curves = []
     for words, rows in tables.items():
         for model in ("modal", SOLID) if words == "printed" else ("modal",):

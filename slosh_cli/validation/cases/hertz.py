@@ -11,19 +11,19 @@ from slosh_cli.track import contact, hertz
 from slosh_cli.validation import kernels
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
-from slosh_cli.validation.data_file import CaseData, read_table
+from slosh_cli.validation.data_file import CaseData, data_rows
 from slosh_cli.validation.exact.creep import ellipse, half_space
 from slosh_cli.validation.runs import scenario
 
-YOUNGS, POISSON = 210e9, 0.3
-MODULUS = YOUNGS / (2 * (1 - POISSON**2))
+_YOUNGS, _POISSON = 210e9, 0.3
+_MODULUS = _YOUNGS / (2 * (1 - _POISSON**2))
 
 
 def compute(data: CaseData) -> Outcome:
     """Semi-axes against the table, curvatures and approach against potentials, the kernel's force, the sphere."""
     found = Findings(data)
     angles, ours, table = [], [], []
-    for row in read_table("hertz_table.csv"):
+    for row in data_rows("hertz_table.csv"):
         angle, m, n = float(row["theta_deg"]), float(row["m"]), float(row["n"])
         coefficients = _table_coefficients(angle)
         for name, value, printed in zip("mn", coefficients, (m, n), strict=True):
@@ -45,16 +45,16 @@ def _table_coefficients(theta: float) -> tuple[float, float]:
     """m and n of `a = m (3 N/(4 E* (A + B)))^(1/3)`, likewise b, with `cos theta = (B - A)/(A + B)`."""
     share = cos(radians(theta))
     wheel, crown = 0.5 / (0.5 * (1 - share)), 0.5 / (0.5 * (1 + share))  # A + B = 1
-    axes = hertz.hertz_contact(wheel, crown, YOUNGS, POISSON).semi_axes(1.0)
-    unit = (3 / (4 * MODULUS)) ** (1 / 3)
+    axes = hertz.hertz_contact(wheel, crown, _YOUNGS, _POISSON).semi_axes(1.0)
+    unit = (3 / (4 * _MODULUS)) ** (1 / 3)
     return axes[0] / unit, axes[1] / unit
 
 
 def _half_space(data: CaseData, found: Findings) -> None:
     for wheel, crown in data.reference["radii"]:
-        program = hertz.hertz_contact(wheel, crown, YOUNGS, POISSON)
+        program = hertz.hertz_contact(wheel, crown, _YOUNGS, _POISSON)
         force = data.reference["force"]
-        approach, along, across = half_space(program.semi_axes(force), force, MODULUS)
+        approach, along, across = half_space(program.semi_axes(force), force, _MODULUS)
         flat, sharp = sorted((0.5 / wheel, 0.5 / crown))
         name = f"wheel {wheel:g} m on crown {crown:g} m, {force / 1e3:g} kN"
         found.compare(f"smaller curvature under the ellipse, {name} / 1/m", along, flat, "half_space")
@@ -66,9 +66,9 @@ def _half_space(data: CaseData, found: Findings) -> None:
 
 def _sphere(found: Findings) -> None:
     radius, force = 0.5, 1e5
-    program = hertz.hertz_contact(radius, radius, YOUNGS, POISSON)
-    found.compare("C_H of a sphere / N/m^1.5", program.stiffness, 4 / 3 * MODULUS * radius**0.5, "half_space")
-    semi_axis = (3 * force * radius / (4 * MODULUS)) ** (1 / 3)
+    program = hertz.hertz_contact(radius, radius, _YOUNGS, _POISSON)
+    found.compare("C_H of a sphere / N/m^1.5", program.stiffness, 4 / 3 * _MODULUS * radius**0.5, "half_space")
+    semi_axis = (3 * force * radius / (4 * _MODULUS)) ** (1 / 3)
     found.compare("radius of its contact / mm", 1e3 * program.semi_axes(force)[0], 1e3 * semi_axis, "half_space")
 
 

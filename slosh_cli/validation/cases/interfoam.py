@@ -6,8 +6,9 @@ from math import pi, sqrt, tanh
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank import shallow
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.section import RectangularSection
@@ -15,18 +16,16 @@ from slosh_cli.tank.section_table import section_table
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.cases import kolaei
 from slosh_cli.validation.chart import Chart, Panel, curve
-from slosh_cli.validation.data_file import CaseData, read_table
+from slosh_cli.validation.data_file import CaseData, data_rows
 
-Array = NDArray[np.float64]
-GRAVITY = 9.81
-STEP = 0.02
+_STEP = 0.02
 
 
 def compute(data: CaseData) -> Outcome:
     """Both histories: the shallow-water liquid decides, the modal one stands beside it."""
     found, panels, tank = Findings(data), [], data.reference
     for deceleration in tank["decelerations"]:
-        rows = read_table(f"interfoam_{deceleration}.csv")
+        rows = data_rows(f"interfoam_{deceleration}.csv")
         time, force, moment = (
             np.array([float(row[name]) for row in rows]) for name in ("time_s", "force_N_per_m", "moment_N")
         )
@@ -57,7 +56,7 @@ def _modal(tank: Any, deceleration: float) -> Array:
     k = pi / tank["length"]
     steepness = k * tank["depth"]
     fraction = 8 / pi**2 * tanh(steepness) / steepness
-    mode = SloshMode(sqrt(GRAVITY * k * tanh(steepness)), 1.0, 0.0, 1 / fraction)
+    mode = SloshMode(sqrt(STANDARD_GRAVITY * k * tanh(steepness)), 1.0, 0.0, 1 / fraction)
     return kolaei.normalised_force((mode,), 1.0, deceleration, 0.0)
 
 
@@ -68,18 +67,18 @@ def _shallow(tank: Any, deceleration: float, steps: int) -> tuple[Array, Array, 
         cells=cells,
         spacing=tank["length"] / cells,
         density=tank["density"],
-        gravity=GRAVITY,
+        gravity=STANDARD_GRAVITY,
         centre_height=section.centroid_height(depth),
         mass=tank["density"] * section.area(depth) * tank["length"],
         still_depth=depth,
         loss=np.zeros(cells + 1),
-        table=section_table(section, GRAVITY, tank["slot_speed"]),
+        table=section_table(section, STANDARD_GRAVITY, tank["slot_speed"]),
         columns=1,
     )
     area, flow, deep = np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth)
     evolve: Any = shallow.liquid_evolve
     work, pushes = np.zeros((shallow.WORK_ROWS, cells + 1)), np.zeros((steps, 4))
     for push in pushes:
-        evolve(liquid, area, flow, deep, -deceleration, STEP, work, push)
-    middles = np.asarray((np.arange(steps) + 0.5) * STEP, dtype=np.float64)
-    return middles, pushes[:, 0] / STEP, pushes[:, 1] / STEP
+        evolve(liquid, area, flow, deep, -deceleration, _STEP, work, push)
+    middles = np.asarray((np.arange(steps) + 0.5) * _STEP, dtype=np.float64)
+    return middles, pushes[:, 0] / _STEP, pushes[:, 1] / _STEP

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.result import Result
 from slosh_cli.scenario import Scenario
@@ -20,11 +20,9 @@ from slosh_cli.validation.exact.fixed_rail import fixed_rail, roll
 from slosh_cli.validation.exact.paper_track import beam
 from slosh_cli.validation.runs import stop
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class _Ground:
     """Wheel deflections (steps, 4) in m of the fixed rail from t = 0 on, its unknowns and the seconds it took."""
 
     deflections: Array
@@ -50,7 +48,7 @@ def compute(data: CaseData) -> Outcome:
     return found.outcome(Chart(panels))
 
 
-def _on_the_ground(result: Result, setting: Mapping[str, Any]) -> Ground:
+def _on_the_ground(result: Result, setting: Mapping[str, Any]) -> _Ground:
     """The same loads in the same places on the fixed rail, which first settles to them at the initial speed."""
     case: Scenario = result.scenario
     step, run_in, ends = setting["step"], setting["run_in"], setting["ends"]
@@ -67,7 +65,7 @@ def _on_the_ground(result: Result, setting: Mapping[str, Any]) -> Ground:
     deflections = roll(rail, places, loads, step)
     seconds = time.perf_counter() - began
     every = round(case.output.interval / step)
-    return Ground(deflections[before.size :: every][: result.time.size], rail.unknowns, seconds)
+    return _Ground(deflections[before.size :: every][: result.time.size], rail.unknowns, seconds)
 
 
 def _fine(result: Result, step: float) -> Array:
@@ -81,7 +79,7 @@ def _loads(result: Result, i: int, step: float, steps_before: int) -> Array:
     return np.concatenate([np.full(steps_before, force[0]), CubicSpline(result.time, force)(_fine(result, step))])
 
 
-def _costs(found: Findings, name: str, result: Result, ground: Ground, setting: Mapping[str, Any]) -> None:
+def _costs(found: Findings, name: str, result: Result, ground: _Ground, setting: Mapping[str, Any]) -> None:
     """What a whole stop would ask of the fixed rail, beside what it asks of the moving one."""
     from slosh_cli.solver.setup import problem
 
@@ -97,7 +95,7 @@ def _costs(found: Findings, name: str, result: Result, ground: Ground, setting: 
     found.note(f"{name}: unknowns ratio for the paper's stop from 160 km/h ({travel:.0f} m)", there / moving)
 
 
-def _panel(name: str, result: Result, ground: Ground) -> Panel:
+def _panel(name: str, result: Result, ground: _Ground) -> Panel:
     curves = []
     for i in (1, 4):
         seen = 1e3 * result.channels[wheel(i, "rail_deflection")]

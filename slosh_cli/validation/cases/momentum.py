@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
 from slosh_cli.results.result import Result
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
-from slosh_cli.validation.exact.wagon import GRAVITY, point_wagon
+from slosh_cli.validation.exact.wagon import point_wagon
 from slosh_cli.validation.runs import runnable, stop
-
-Array = NDArray[np.float64]
 
 
 def compute(data: CaseData) -> Outcome:
@@ -28,7 +27,7 @@ def compute(data: CaseData) -> Outcome:
         found.compare(f"{name}: momentum lost / kN s", float(lost[-1]) / 1e3, float(impulse[-1]) / 1e3, "momentum")
         gap = float(np.abs(lost - impulse).max() / impulse[-1])
         found.limit(f"{name}: largest difference on the way, over the whole", gap, "on_the_way")
-        weight = GRAVITY * point_wagon(result.scenario).mass
+        weight = STANDARD_GRAVITY * point_wagon(result.scenario).mass
         found.compare(f"{name}: weight / kN", result.weight_N / 1e3, weight / 1e3, "weight")
         mean = result.mean_total_wheel_load_N
         found.compare(

@@ -11,7 +11,7 @@ from slosh_cli.validation import kernels
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
-from slosh_cli.validation.exact.paper_track import LOADED, WHEELS, at, beam, paper_track, steady_deflections
+from slosh_cli.validation.exact.paper_track import LOADED, WHEEL_PLACES, at, beam, paper_track, steady_deflections
 from slosh_cli.validation.exact.steady_rail import closed_form
 
 LENGTHS = (1.0, 0.5, 0.25)
@@ -54,9 +54,9 @@ def _kernel_gap(track: Track, speed: float) -> float:
     """Largest nodal force (N) that the time loop's residual leaves beside the load of 1 N."""
     from slosh_cli.track import mem
 
-    rail = mem.rail_model(track, WHEELS)
+    rail = mem.rail_model(track, WHEEL_PLACES)
     steady = np.ascontiguousarray(mem.steady_shapes(rail, speed)[:, LOADED])
-    residual = kernels.rail_residual(rail, steady, speed)
+    residual = kernels.residual_forces(rail, steady, speed)
     residual[rail.contact[LOADED]] += 1.0
     return float(np.abs(residual).max())
 

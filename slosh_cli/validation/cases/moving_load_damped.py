@@ -10,7 +10,7 @@ from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.exact.paper_track import at, beam, paper_track, steady_deflections
 from slosh_cli.validation.exact.steady_rail import fourier_integral
 
-ELEMENT_LENGTH = 0.125
+_ELEMENT_LENGTH = 0.125
 
 
 def compute(data: CaseData) -> Outcome:
@@ -18,7 +18,7 @@ def compute(data: CaseData) -> Outcome:
     found = Findings(data)
     curves: list[Curve] = []
     for alpha, lam in data.reference["dampings"]:
-        track = paper_track(ELEMENT_LENGTH, damping=alpha, shear_damping=lam)
+        track = paper_track(_ELEMENT_LENGTH, damping=alpha, shear_damping=lam)
         for speed in data.reference["speeds"]:
             nodes, shape = steady_deflections(track, speed)
             exact = {r: fourier_integral(beam(track), r, speed) for r in data.reference["places"]}

@@ -12,10 +12,10 @@ from slosh_cli.validation import kernels
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.chart import Chart, Curve, Panel, curve
 from slosh_cli.validation.data_file import CaseData
-from slosh_cli.validation.exact.creep import Adhesion, adhesion, ellipse, friction
+from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse, friction
 from slosh_cli.validation.runs import scenario
 
-LOAD = 93e3
+_LOAD = 93e3
 
 
 def compute(data: CaseData) -> Outcome:
@@ -23,7 +23,7 @@ def compute(data: CaseData) -> Outcome:
     found, curves = Findings(data), []
     peaks: dict[tuple[str, float], tuple[float, float]] = {}
     for rail in ("dry", "wet"):
-        printed = Adhesion(**data.reference[rail])
+        printed = PolachParameters(**data.reference[rail])
         gradient = _gradient()
         for speed in data.reference["speeds"]:
             ours = _program(rail, speed)
@@ -46,20 +46,20 @@ def _gradient() -> float:
     case = scenario("paper-80-liquid")
     steel = case.contact
     a, b, _ = ellipse(
-        case.wagon.wheelset.wheel_radius, steel.rail_crown_radius, steel.youngs_modulus, steel.poisson_ratio, LOAD
+        case.wagon.wheelset.wheel_radius, steel.rail_crown_radius, steel.youngs_modulus, steel.poisson_ratio, _LOAD
     )
     shear = steel.youngs_modulus / (2 * (1 + steel.poisson_ratio))
-    return shear * pi * a * b * steel.kalker_c11 / (4 * LOAD)
+    return shear * pi * a * b * steel.kalker_c11 / (4 * _LOAD)
 
 
-def _law(printed: Adhesion, gradient: float, speed: float) -> Callable[[float], float]:
+def _law(printed: PolachParameters, gradient: float, speed: float) -> Callable[[float], float]:
     return lambda creepage: adhesion(printed, gradient, creepage, speed)
 
 
 def _program(rail: str, speed: float) -> Callable[[float], float]:
     case = scenario("paper-80-liquid", f"contact.adhesion={rail}")
     model = contact.contact_model(case.contact, case.wagon.wheelset.wheel_radius)
-    return lambda creepage: kernels.creep_force(model, LOAD, creepage * speed, speed) / LOAD
+    return lambda creepage: kernels.creep_force(model, _LOAD, creepage * speed, speed) / _LOAD
 
 
 def _whole_curve(found: Findings, name: str, ours: Callable[[float], float], law: Callable[[float], float]) -> None:
@@ -79,7 +79,7 @@ def _peak(law: Callable[[float], float]) -> tuple[float, float]:
     return float(found.x), float(-found.fun)
 
 
-def _limits(found: Findings, name: str, p: Adhesion, gradient: float, ours: Callable[[float], float]) -> None:
+def _limits(found: Findings, name: str, p: PolachParameters, gradient: float, ours: Callable[[float], float]) -> None:
     """Kalker's linear law, reduced, for no slip; friction for a locked wheel whose contact is all slip."""
     tiny = 1e-8
     linear = 2 / pi * gradient * tiny * (p.kA + p.kS)
@@ -87,7 +87,7 @@ def _limits(found: Findings, name: str, p: Adhesion, gradient: float, ours: Call
     far = 1e6
     case = scenario("paper-80-liquid", f"contact.adhesion={'dry' if p.kA == 1.0 else 'wet'}")
     model = contact.contact_model(case.contact, case.wagon.wheelset.wheel_radius)
-    sliding = kernels.creep_force(model, LOAD, far * 0.05, 0.05) / LOAD
+    sliding = kernels.creep_force(model, _LOAD, far * 0.05, 0.05) / _LOAD
     found.compare(f"complete sliding over friction, {name}", sliding / friction(p, far * 0.05), 1.0, "sliding")
 
 
@@ -111,7 +111,7 @@ def _published_behaviour(data: CaseData, found: Findings, peaks: dict[tuple[str,
     found.verdict("the peak falls with speed", "yes" if falling else "no", "yes")
 
 
-def _curves(rail: str, printed: Adhesion, gradient: float, speed: float) -> list[Curve]:
+def _curves(rail: str, printed: PolachParameters, gradient: float, speed: float) -> list[Curve]:
     creepages = np.geomspace(1e-4, 1.0, 200)
     ours = _program(rail, speed)
     law = [adhesion(printed, gradient, float(nu), speed) for nu in creepages]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.result import Result
 from slosh_cli.tank.coefficients import slosh_modes
@@ -15,8 +15,6 @@ from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.exact.exudyn_wagon import Histories, exudyn_stop
 from slosh_cli.validation.runs import stop
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from slosh_cli.validation.case import Findings
 from slosh_cli.validation.chart import Chart, Panel, curve
 from slosh_cli.validation.exact.tank import ExactMode
 
-Exact = Callable[[int, float], ExactMode]
+_Exact = Callable[[int, float], ExactMode]
 """The closed form of mode n at a filling."""
 NUMBERS = (1, 3, 5)
 
@@ -27,7 +27,7 @@ def compare(found: Findings, where: str, modes: Sequence[SloshMode], exact: Sequ
         found.compare(f"slosh mass, {name} / kg", mode.slosh_mass, true.slosh_mass, "coupling")
 
 
-def frequency_chart(computed: Mapping[float, Sequence[SloshMode]], exact: Exact) -> Chart:
+def frequency_chart(computed: Mapping[float, Sequence[SloshMode]], exact: _Exact) -> Chart:
     """Frequency and height of the force of each mode over the filling."""
     fills, panels = list(computed), []
     smooth = np.linspace(min(fills), max(fills), 60)

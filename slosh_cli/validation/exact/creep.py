@@ -11,7 +11,7 @@ from math import atan, cos, exp, pi, sin, sqrt
 
 
 @dataclass(frozen=True)
-class Adhesion:
+class PolachParameters:
     """Polach's parameters as his Table prints them; B in s/m."""
 
     kA: float  # noqa: N815 - the symbols of the law
@@ -21,12 +21,12 @@ class Adhesion:
     B: float
 
 
-def friction(p: Adhesion, slip: float) -> float:
+def friction(p: PolachParameters, slip: float) -> float:
     """Falling friction at a slip velocity in m/s."""
     return p.mu0 * ((1 - p.A) * exp(-p.B * abs(slip)) + p.A)
 
 
-def adhesion(p: Adhesion, gradient: float, creepage: float, speed: float) -> float:
+def adhesion(p: PolachParameters, gradient: float, creepage: float, speed: float) -> float:
     """Tangential over normal force; `eps = gradient creepage / mu`, slip = creepage speed."""
     mu = friction(p, creepage * speed)
     eps = gradient * creepage / mu

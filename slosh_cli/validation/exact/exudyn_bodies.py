@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.validation.exact.creep import Adhesion, adhesion, ellipse
-from slosh_cli.validation.exact.wagon import GRAVITY
-
-Array = NDArray[np.float64]
+from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,7 @@ class Bodies:
         return Bodies(mass / 2, inertia / 2, height, slosh / 2, slosh_height - height, attachment)
 
 
-class Contact:
+class WheelContact:
     """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation)."""
 
     def __init__(self, scenario: Scenario) -> None:
@@ -62,7 +60,7 @@ class Contact:
         self.stiffness = approach**-1.5
         shear = steel.youngs_modulus / (2 * (1 + steel.poisson_ratio))
         self.gradient = shear * np.pi * a * b * steel.kalker_c11 / 4  # times N^(-1/3)
-        self.adhesion = Adhesion(p.kA, p.kS, p.mu0, p.A, p.B)
+        self.adhesion = PolachParameters(p.kA, p.kS, p.mu0, p.A, p.B)
         self.resistance = scenario.wagon.running_resistance
         self.torque, self.onset = scenario.braking.torque, scenario.braking.onset
 
@@ -89,12 +87,12 @@ class Contact:
         return np.array([-creep - rolling, normal, self.braking(time) - creep * self.radius])
 
 
-def settled(scenario: Scenario, bodies: Bodies, contact: Contact) -> tuple[float, float, float]:
+def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[float, float, float]:
     """Heave (m) of car, bogies and wheels under the weight, from the unloaded geometry."""
     wagon = scenario.wagon
-    on_secondary = GRAVITY * (bodies.car + bodies.slosh) / 2
-    on_primary = (on_secondary + GRAVITY * wagon.bogie.mass / 2) / 2
-    load = on_primary + GRAVITY * wagon.wheelset.mass / 2
+    on_secondary = STANDARD_GRAVITY * (bodies.car + bodies.slosh) / 2
+    on_primary = (on_secondary + STANDARD_GRAVITY * wagon.bogie.mass / 2) / 2
+    load = on_primary + STANDARD_GRAVITY * wagon.wheelset.mass / 2
     wheel = -((load / contact.stiffness) ** (2 / 3))
     bogie = wheel - on_primary / wagon.primary_suspension.stiffness
     return bogie - on_secondary / wagon.secondary_suspension.stiffness, bogie, wheel

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from slosh_cli.scenario import Scenario
-from slosh_cli.validation.exact.wagon import GRAVITY
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 
 
 class Builder:
@@ -29,7 +29,7 @@ class Builder:
     def weigh(self, body: int) -> None:
         """Gravity at a body's centre."""
         marker = self.system.AddMarker(self.items.MarkerBodyMass(bodyNumber=body))
-        self.system.AddLoad(self.items.LoadMassProportional(markerNumber=marker, loadVector=[0, -GRAVITY, 0]))
+        self.system.AddLoad(self.items.LoadMassProportional(markerNumber=marker, loadVector=[0, -STANDARD_GRAVITY, 0]))
 
     def point(self, body: int, x: float, y: float) -> int:
         """Marker at a point of a body."""

@@ -15,15 +15,13 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
-from slosh_cli.validation.exact.exudyn_bodies import Bodies, Contact, settled
+from slosh_cli.validation.exact.exudyn_bodies import Bodies, WheelContact, settled
 from slosh_cli.validation.exact.exudyn_builder import Builder
-from slosh_cli.validation.exact.wagon import GRAVITY
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +38,7 @@ class Histories:
 
 
 def _build(system: Any, scenario: Scenario, mode: SloshMode, linear: bool) -> dict[str, Any]:
-    build, contact = Builder(system, scenario), Contact(scenario)
+    build, contact = Builder(system, scenario), WheelContact(scenario)
     wagon, bodies = scenario.wagon, Bodies.of(scenario, mode)
     axle, pivot = wagon.wheelset.wheel_radius, wagon.traction_height
     sunk_car, sunk_bogie, sunk_wheel = settled(scenario, bodies, contact)
@@ -98,7 +96,7 @@ def _yoke(build: Builder) -> int:
 def _wheel(
     build: Builder,
     scenario: Scenario,
-    contact: Contact,
+    contact: WheelContact,
     bogie: int,
     arm: float,
     sunk: float,
@@ -115,7 +113,7 @@ def _wheel(
         build.items.ObjectGenericODE2(
             nodeNumbers=[node],
             massMatrix=np.diag([wheelset.mass, wheelset.mass, wheelset.spin_inertia]) / 2,
-            forceUserFunction=lambda *state: contact.forces(*state) - [0, GRAVITY * wheelset.mass / 2, 0],
+            forceUserFunction=lambda *state: contact.forces(*state) - [0, STANDARD_GRAVITY * wheelset.mass / 2, 0],
         )
     )
     build.tie(build.coordinates(wheel), [1, 0, 0], *axle_line)
@@ -170,7 +168,7 @@ def _linear_slosh(build: Builder, bodies: Bodies, its_car: tuple[int, int], mode
     shift, turn = np.zeros(6), np.zeros(6)  # of x, y, rotation of the car and of the body
     shift[[0, 2, 3]] = -1.0, bodies.slosh_height, 1.0
     turn[2] = 1.0
-    weight = GRAVITY * bodies.slosh
+    weight = STANDARD_GRAVITY * bodies.slosh
     stiffness = bodies.slosh * mode.frequency**2 * np.outer(shift, shift)
     stiffness += weight * (np.outer(shift, turn) + np.outer(turn, shift) - bodies.slosh_height * np.outer(turn, turn))
     build.system.AddObject(
@@ -201,10 +199,10 @@ def exudyn_stop(
     settings.solution.sensors.writePeriod = step
     settings.timeIntegration.verboseMode = 0
     system.SolveDynamic(settings, solverType=exu.DynamicSolverType.TrapezoidalIndex2)
-    return _read(system, sensors, Contact(scenario), mode)
+    return _read(system, sensors, WheelContact(scenario), mode)
 
 
-def _read(system: Any, sensors: dict[str, Any], contact: Contact, mode: SloshMode) -> Histories:
+def _read(system: Any, sensors: dict[str, Any], contact: WheelContact, mode: SloshMode) -> Histories:
     """Sensors to histories; a sensor's first column is the time."""
 
     def stored(sensor: int) -> Array:

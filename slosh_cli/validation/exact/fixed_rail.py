@@ -10,11 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from slosh_cli.arrays import Array
 from slosh_cli.validation.exact.steady_rail import Beam
-
-Array = NDArray[np.float64]
 
 
 def element_matrices(length: float) -> tuple[Array, Array, Array]:

@@ -6,11 +6,12 @@ from typing import cast
 
 import numpy as np
 
+from slosh_cli.arrays import Array
 from slosh_cli.scenario import Track
-from slosh_cli.validation.exact.steady_rail import Array, Beam
+from slosh_cli.validation.exact.steady_rail import Beam
 from slosh_cli.validation.runs import scenario
 
-WHEELS = np.array([4.0, 0.0, -2.0, -4.0])
+WHEEL_PLACES = np.array([4.0, 0.0, -2.0, -4.0])
 """Places of the wheels in m: the second stands in the middle of the domain and carries the load."""
 LOADED = 1
 
@@ -44,9 +45,9 @@ def steady_deflections(track: Track, speed: float) -> tuple[Array, Array]:
     """Nodes (m) and deflection (m, down) per newton under the loaded wheel, as the program computes them."""
     from slosh_cli.track import mem
 
-    rail = mem.rail_model(track, WHEELS)
+    rail = mem.rail_model(track, WHEEL_PLACES)
     length, element_length = cast(tuple[float, float], (track.domain.length, track.domain.element_length))
-    nodes = mem.fitted_nodes(WHEELS, length, element_length)[1:-1]
+    nodes = mem.fitted_nodes(WHEEL_PLACES, length, element_length)[1:-1]
     return nodes, -mem.steady_shapes(rail, speed)[1 : rail.nodes - 1, LOADED]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cosh, pi, sinh, sqrt, tanh
 
-GRAVITY = 9.81
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ def rectangle(n: int, width: float, depth: float, length: float, density: float)
     lambda_1 = -2 * density * width / k**2
     return ExactMode(
         n,
-        sqrt(GRAVITY * k * tanh(k * depth)),
+        sqrt(STANDARD_GRAVITY * k * tanh(k * depth)),
         lambda_1,
         lambda_1 * (depth - 2 / k * tanh(k * depth / 2)),
         density * length / 2 * width / (k * tanh(k * depth)),
@@ -56,7 +56,7 @@ def trough(n: int, depth: float, length: float, density: float) -> ExactMode:
     phi_n_z = c * (sinh(double) / (2 * a) - depth)
     return ExactMode(
         n,
-        sqrt(GRAVITY * kappa),
+        sqrt(STANDARD_GRAVITY * kappa),
         density * along * 2 * depth,
         density * (-2 * z_phi - along * phi_n_z),
         density * length / 2 * kappa * c**2 * cosh(a * depth) ** 2 * mean_square,

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slosh_cli.scenario import HorizontalCylinder, Scenario
-
-GRAVITY = 9.81
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -28,7 +27,7 @@ class PointWagon:
     @property
     def wheel_load(self) -> float:
         """Static load of one of the eight wheels, N."""
-        return GRAVITY * self.mass / 8
+        return STANDARD_GRAVITY * self.mass / 8
 
 
 def segment_area(radius: float, fill: float) -> float:
@@ -37,7 +36,7 @@ def segment_area(radius: float, fill: float) -> float:
     return float(radius**2 * (half_angle - np.sin(half_angle) * np.cos(half_angle)))
 
 
-def liquid_mass(scenario: Scenario) -> float:
+def _liquid_mass(scenario: Scenario) -> float:
     """Mass of the liquid in a horizontal cylinder, kg."""
     tank = scenario.tank
     if not isinstance(tank, HorizontalCylinder):
@@ -48,7 +47,7 @@ def liquid_mass(scenario: Scenario) -> float:
 def point_wagon(scenario: Scenario) -> PointWagon:
     """Add the wagon up."""
     wagon = scenario.wagon
-    mass = wagon.car_body.mass + 2 * wagon.bogie.mass + 4 * wagon.wheelset.mass + liquid_mass(scenario)
+    mass = wagon.car_body.mass + 2 * wagon.bogie.mass + 4 * wagon.wheelset.mass + _liquid_mass(scenario)
     radius = wagon.wheelset.wheel_radius
     terms = wagon.running_resistance
     return PointWagon(
