@@ -34,8 +34,7 @@ class Block:
     """Base of all blocks: annotations are the fields, given by keyword.
 
     A field is a `float`, an `int`, an array of `slosh_cli.arrays`, another block, or a tuple of blocks of one class.
-    Numbers may be set afterwards, from Python and in kernels. Raises TypeError for fields that are missing, or that are
-    not what is annotated.
+    Numbers may be set afterwards, from Python and in kernels. Raises TypeError for fields that do not fit.
     """
 
     address: ClassVar[int]
@@ -113,18 +112,14 @@ class _Row(tuple[Block, ...]):
         self.address, self.kind = _address(self._list), _RowType(blocks[0].kind)
 
 
-class _Field(NamedTuple):
-    """A field of a class of blocks: what is annotated, and the words that it takes in a block's memory."""
-
+class _Field(NamedTuple):  # what is annotated, and the words that it takes in a block's memory
     hint: Any
     array: ArrayKind | None
     place: int
     words: int
 
 
-class _Plan(NamedTuple):
-    """The fields of a class of blocks, and how many words of memory they take."""
-
+class _Plan(NamedTuple):  # the fields of a class of blocks, and how many words of memory they take
     fields: dict[str, _Field]
     size: int
 
@@ -173,8 +168,8 @@ def _kind_of(cls: Any, parts: tuple[Any, ...]) -> _BlockType:
     kinds: dict[str, Any] = {}
     rest = iter(parts)
     for name, field in _plan(cls).fields.items():
-        if field.array is not None:
-            kinds[name] = types.Array(np_support.from_dtype(field.array.dtype), field.array.dimensions, "C")
+        if array := field.array:
+            kinds[name] = types.Array(np_support.from_dtype(array.dtype), array.dimensions, "C")
         elif field.hint in (float, int):
             kinds[name] = types.float64 if field.hint is float else types.int64
         else:
