@@ -10,28 +10,86 @@ liquid: [modal, rigid]        # default: the scenario's own model and rigid
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
-from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
+from pydantic import Field
+
+from slosh_cli.errors import ScenarioError, UsageError, ValueRefused
 from slosh_cli.scenario import find_packaged, load_document
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.diagnosis import diagnose
 from slosh_cli.scenario.document import Document
+from slosh_cli.scenario.leaves import Judge, Leaf
+from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.source import text_of
+from slosh_cli.scenario.tree import value_at
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import NAME, file_safe
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values
 from slosh_cli.study.plan import LIQUID
 
-KEYS: Final = ("name", "description", "base", "vary", "liquid")
-
+_BASE: Final = "must be the path of a scenario, or the name of a packaged one"
 _MAYBE = re.compile(r"""\b(?:base|vary)["']?\s*:""")
 _TELLING: Final = frozenset({"base", "vary"})
 """A scenario has neither of these keys."""
+
+
+@dataclass(frozen=True)
+class _Base(Leaf):
+    def parse(self, value: object) -> str:
+        if isinstance(value, str) and value:
+            return value
+        raise ValueRefused(_BASE, plain(value), "write `base: paper_80.yaml`")
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"type": "string", "minLength": 1}
+
+
+@dataclass(frozen=True)
+class _Vary(Judge):
+    def parse(self, value: object) -> Any:
+        if isinstance(value, dict) and value:
+            return value
+        fix = "write `vary:` and under it `tank.fill: 0.2:0.9:0.1`, say"
+        raise ValueRefused("must be a mapping of key paths to values", plain(value), fix)
+
+
+@dataclass(frozen=True)
+class _Values(Leaf):
+    def parse(self, value: object) -> tuple[str, ...]:
+        return axis_values(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        single = {"type": ["string", "number", "boolean", "object"]}
+        return {"anyOf": [single, {"type": "array", "minItems": 1}]}
+
+
+class StudyKeys(Part):
+    """What a study file may say."""
+
+    noun = "study"
+
+    name: Annotated[str | None, NAME] = Field(
+        default=None, description="Name of the study, and of its folder. Default: the file's own."
+    )
+    description: Any = Field(default="", description="What the study is about.")
+    base: Annotated[str | None, _Base()] = Field(
+        default=None,
+        validate_default=True,
+        description="Path of the scenario, from this file; or the name of a packaged one.",
+    )
+    vary: Annotated[dict[str, Annotated[tuple[str, ...], _Values()]], _Vary()] = Field(
+        default=None,
+        validate_default=True,
+        description="Keys of the scenario with the values they take: a list, or a range `start:stop:step`.",
+    )
+    liquid: Annotated[tuple[str, ...] | None, _Values()] = Field(
+        default=None, description="Models of the load. Default: the scenario's own and rigid."
+    )
 
 
 @dataclass(frozen=True)
@@ -61,67 +119,31 @@ def is_study_file(path: Path) -> bool:
 def read_study_file(path: Path) -> _StudyFile:
     """Read a study file. Raises ScenarioError with every mistake and its line."""
     document = load_document(path)
-    data = document.data if isinstance(document.data, dict) else {}
-    reader = _Reader(path, document)
-    for key in data:
-        if key not in KEYS:
-            near = difflib.get_close_matches(str(key), KEYS, 1)
-            fix = f"write `{near[0]}`" if near else f"take it out; the keys here are {', '.join(KEYS)}"
-            reader.problem((key,), "is not a key of a study", f"`{key}`", fix)
-    study = _StudyFile(reader.name(data), reader.base(data), reader.axes(data))
-    if document.problems:
+    keys, findings = diagnose(StudyKeys, document.data if isinstance(document.data, dict) else {})
+    for finding in findings:
+        document.add(finding)
+    base = _base(path, document)
+    if keys is None or base is None or document.problems:
         raise ScenarioError(str(path), document.sorted_problems())
-    return study
+    found: list[tuple[str, tuple[str, ...], tuple[str, ...]]]
+    found = [(key, ("vary", key), values) for key, values in keys.vary.items()]
+    if keys.liquid is not None:
+        found.append((LIQUID, ("liquid",), keys.liquid))
+    axes = [Axis(key, values, str(path), document.origin(place).line) for key, place, values in found]
+    return _StudyFile(keys.name or file_safe(path.stem) or "study", base, tuple(axes))
 
 
-class _Reader:
-    """Takes the parts of a study out of its document and notes what is wrong with them."""
-
-    def __init__(self, path: Path, document: Document) -> None:
-        self._path = path
-        self._document = document
-
-    def problem(self, place: tuple[str | int, ...], rule: str, given: str, fix: str) -> None:
-        line = self._document.origin(place).line
-        self._document.problems.append(Problem(line, ".".join(map(str, place)), rule, given, fix))
-
-    def name(self, data: Mapping[str, Any]) -> str:
-        name = data.get("name", file_safe(self._path.stem) or "study")
-        try:
-            return str(NAME.parse(name))
-        except ValueRefused as refused:
-            self.problem(("name",), refused.rule, refused.given, refused.fix)
-            return ""
-
-    def base(self, data: Mapping[str, Any]) -> Path:
-        given = data.get("base")
-        rule = "must be the path of a scenario, or the name of a packaged one"
-        if not isinstance(given, str) or not given:
-            self.problem(("base",), rule, plain(given), "write `base: paper_80.yaml`")
-            return self._path
-        beside = self._path.parent / given
-        if beside.exists():
-            return beside
-        try:
-            return find_packaged(given)
-        except UsageError as error:
-            self.problem(("base",), rule, f"`{given}`, and there is no {beside}", error.message.rpartition("; ")[2])
-            return self._path
-
-    def axes(self, data: Mapping[str, Any]) -> tuple[Axis, ...]:
-        vary = data.get("vary")
-        if not isinstance(vary, dict) or not vary:
-            rule = "must be a mapping of key paths to values"
-            self.problem(("vary",), rule, plain(vary), "write `vary:` and under it `tank.fill: 0.2:0.9:0.1`, say")
-            vary = {}
-        found = [self._axis(("vary", key), str(key), spec) for key, spec in vary.items()]
-        if "liquid" in data:
-            found.append(self._axis(("liquid",), LIQUID, data["liquid"]))
-        return tuple(axis for axis in found if axis is not None)
-
-    def _axis(self, place: tuple[str, ...], key: str, spec: Any) -> Axis | None:
-        try:
-            return Axis(key, axis_values(spec), str(self._path), self._document.origin(place).line)
-        except ValueRefused as refused:
-            self.problem(place, refused.rule, refused.given, refused.fix)
-            return None
+def _base(path: Path, document: Document) -> Path | None:
+    """The file of the base scenario; None, with a problem where one is named, where there is none."""
+    given = value_at(document.data, ("base",))
+    if not isinstance(given, str) or not given:
+        return None
+    beside = path.parent / given
+    if beside.exists():
+        return beside
+    try:
+        return find_packaged(given)
+    except UsageError as error:
+        fix = error.message.rpartition("; ")[2]
+        document.add(Finding(("base",), _BASE, f"`{given}`, and there is no {beside}", fix))
+        return None
