@@ -21,9 +21,9 @@ from slosh_cli.scenario.scalars import plain_number
 from slosh_cli.scenario.source import Kind, bytes_of, unreadable
 from slosh_cli.scenario.units import plain
 
-TABLE: Final = Kind("CSV", (".csv", ".tsv", ".txt"), 64_000_000, "check the path")
-MOST_ROWS: Final = 1_000_000
-KEPT: Final = 100
+_TABLE: Final = Kind("CSV", (".csv", ".tsv", ".txt"), 64_000_000, "check the path")
+_MOST_ROWS: Final = 1_000_000
+_KEPT: Final = 100
 """Problems that are kept; the others are counted."""
 
 _SEPARATORS: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
@@ -56,7 +56,7 @@ class Table:
 
     def refuse(self, line: int | None, column: str, rule: str, given: str, fix: str) -> None:
         """Note a problem; `line` is None for the table as a whole."""
-        if len(self.problems) < KEPT:
+        if len(self.problems) < _KEPT:
             self.problems.append(Problem(line, column, rule, given, fix))
         else:
             self.more += 1
@@ -89,7 +89,7 @@ def read_table(path: Path, names: Sequence[str], judge: Callable[[Table], None] 
 
 
 def _text_of(path: Path) -> str:
-    raw = bytes_of(path, TABLE)
+    raw = bytes_of(path, _TABLE)
     if raw.startswith(b"PK\x03\x04") or raw.startswith(b"\xd0\xcf\x11\xe0"):
         raise unreadable(path, "must be a CSV file", "a spreadsheet", _SAVE_AS)
     encoding = next((encoding for mark, encoding in _BOMS if raw.startswith(mark)), "utf-8")
@@ -202,8 +202,8 @@ def _fill(
     """Read the rows into the columns."""
     marks = _DecimalMarks(separator)
     for line, cells in records:
-        if len(table.lines) == MOST_ROWS:
-            table.refuse(line, "", f"must have at most {MOST_ROWS} rows", "more", "leave out rows")
+        if len(table.lines) == _MOST_ROWS:
+            table.refuse(line, "", f"must have at most {_MOST_ROWS} rows", "more", "leave out rows")
             return
         table.lines.append(line)
         if len(cells) > len(head) and any(cells[len(head) :]):

@@ -19,13 +19,13 @@ REFUSED: Final = 1e-2
 """A stretch of rail whose ends change the deflection by more than this part is refused."""
 TOLD: Final = 1e-3
 """A change by more than this part is warned of, from the ends as from the elements."""
-DEFAULT: Final = 1e-6
+_DEFAULT: Final = 1e-6
 """What the default length leaves of it, no more than the energy ledger misses."""
 LEAST_MARGIN: Final = 5.0
 """Least length of rail ahead of the first and behind the last wheel, m, whatever the track."""
-FINE: Final = 0.4
+_FINE: Final = 0.4
 """Default length of an element by the length in which a load's deflection fades, (4 EI/k)^(1/4); the error is 1e-4."""
-ELEMENT_ERROR: Final = 1.0 / 250.0
+_ELEMENT_ERROR: Final = 1.0 / 250.0
 """Error of the deflection under a load, by the fourth power of the same ratio (cubic elements; 1/230 to 1/280)."""
 LONGEST: Final = 1000.0
 """Longest stretch of rail, m."""
@@ -40,10 +40,10 @@ def computed_lengths(track: Track, wheelbase: float, pivot_spacing: float, speed
     rail, foundation, domain = track.rail, track.foundation, track.domain
     length, element = domain.length, domain.element_length
     if length is None:
-        margin = margin_for(rail, foundation, speed, DEFAULT)
+        margin = margin_for(rail, foundation, speed, _DEFAULT)
         length = math.ceil(min(pivot_spacing + wheelbase + 2.0 * margin, LONGEST))
     if element is None:
-        element = min(FINE * fading_length(rail, foundation), 0.5 * wheelbase)
+        element = min(_FINE * fading_length(rail, foundation), 0.5 * wheelbase)
     return float(length), element
 
 
@@ -86,7 +86,7 @@ def margin_for(rail: Rail, foundation: Foundation, speed: float, error: float) -
 
 def error_of_elements(rail: Rail, foundation: Foundation, element: float) -> float:
     """Error of the deflection under a wheel, as a part of it, by elements of length `element` (m)."""
-    return ELEMENT_ERROR * (element / fading_length(rail, foundation)) ** 4
+    return _ELEMENT_ERROR * (element / fading_length(rail, foundation)) ** 4
 
 
 def fading_length(rail: Rail, foundation: Foundation) -> float:
