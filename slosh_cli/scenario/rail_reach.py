@@ -23,7 +23,7 @@ _DEFAULT: Final = 1e-6
 """What the default length leaves of it, no more than the energy ledger misses."""
 LEAST_MARGIN: Final = 5.0
 """Least length of rail ahead of the first and behind the last wheel, m, whatever the track."""
-FINE: Final = 0.4
+_FINE: Final = 0.4
 """Default length of an element by the length in which a load's deflection fades, (4 EI/k)^(1/4); the error is 1e-4."""
 _ELEMENT_ERROR: Final = 1.0 / 250.0
 """Error of the deflection under a load, by the fourth power of the same ratio (cubic elements; 1/230 to 1/280)."""
@@ -43,7 +43,7 @@ def computed_lengths(track: Track, wheelbase: float, pivot_spacing: float, speed
         margin = margin_for(rail, foundation, speed, _DEFAULT)
         length = math.ceil(min(pivot_spacing + wheelbase + 2.0 * margin, LONGEST))
     if element is None:
-        element = min(FINE * fading_length(rail, foundation), 0.5 * wheelbase)
+        element = min(_FINE * fading_length(rail, foundation), 0.5 * wheelbase)
     return float(length), element
 
 

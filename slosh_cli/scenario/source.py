@@ -20,7 +20,7 @@ class Kind:
     otherwise: str
 
 
-SCENARIO: Final = Kind(
+_SCENARIO: Final = Kind(
     "scenario", (".yaml", ".yml"), 1_000_000, "check the path, or write a scenario to start from with `slosh init`"
 )
 """A scenario has a few thousand bytes."""
@@ -28,7 +28,7 @@ SCENARIO: Final = Kind(
 
 def text_of(path: Path) -> str:
     """The text of a scenario or study; ScenarioError where there is none to read."""
-    raw = bytes_of(path, SCENARIO)
+    raw = bytes_of(path, _SCENARIO)
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:
