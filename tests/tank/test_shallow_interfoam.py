@@ -7,7 +7,7 @@ from shallow_tools import history, liquid_in, moving
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.section import RectangularSection
 from slosh_cli.validation.cases import kolaei
-from slosh_cli.validation.data_file import read_table
+from slosh_cli.validation.data_file import data_rows
 
 DEPTH = 1.1875
 LARGEST_RMS = {0.6: 0.16, 1.5: 0.11}
@@ -15,7 +15,7 @@ LINEAR_RMS = {0.6: 0.218, 1.5: 0.363}
 
 
 def reference(deceleration):
-    rows = read_table(f"interfoam_{deceleration}.csv")
+    rows = data_rows(f"interfoam_{deceleration}.csv")
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 

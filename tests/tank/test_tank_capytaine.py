@@ -8,10 +8,10 @@ import math
 
 import numpy as np
 import pytest
+from rigid_part import added_mass
 from tank_examples import cylinder
 
 from slosh_cli.tank.coefficients import computed_modes
-from slosh_cli.tank.inertia import added_mass
 from slosh_cli.tank.load import frozen_load
 
 cpt = pytest.importorskip("capytaine")

@@ -11,7 +11,7 @@ from slosh_cli.scenario import Liquid, Rectangular, load_tank_scenario
 from slosh_cli.solver.excite import Deceleration, excite
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.validation.data_file import read_table
+from slosh_cli.validation.data_file import data_rows
 
 ROOT = Path(__file__).parents[2]
 LEVEL = 0.2 * 9.81
@@ -154,7 +154,7 @@ def test_a_rigid_load_follows():
 
 
 def interfoam(level):
-    rows = read_table(f"interfoam_{level}.csv")
+    rows = data_rows(f"interfoam_{level}.csv")
     return (np.array([float(row[name]) for row in rows]) for name in ("time_s", "force_N_per_m", "moment_N"))
 
 

@@ -9,11 +9,11 @@ from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
 from slosh_cli.tank.section import EllipticalSection, RectangularSection
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
-from slosh_cli.validation.data_file import read_table
+from slosh_cli.validation.data_file import data_rows
 
 
 def transverse_table():
-    rows = read_table("transverse_modes.csv")
+    rows = data_rows("transverse_modes.csv")
     return [(float(row["depth_over_diameter"]), float(row["omega2_R_over_g"])) for row in rows]
 
 

@@ -10,7 +10,7 @@ from slosh_cli.errors import UsageError
 from slosh_cli.validation import registry
 from slosh_cli.validation.case import Findings, run_case
 from slosh_cli.validation.chart import Chart, Panel, curve
-from slosh_cli.validation.data_file import read_case, read_table
+from slosh_cli.validation.data_file import data_rows, read_case
 
 QUICK = [name for name in registry.NAMES if read_case(name).quick]
 NOT_QUICK = [name for name in registry.NAMES if name not in QUICK]
@@ -56,14 +56,14 @@ def test_a_case_keeps_within_its_tolerances(name):
 
 
 def test_reference_tables_are_the_published_ones():
-    table = {row["fill_over_radius"]: row["max_normalised_force"] for row in read_table("table1.csv")}
+    table = {row["fill_over_radius"]: row["max_normalised_force"] for row in data_rows("table1.csv")}
     assert table == {"1.0": "1.47", "1.5": "1.29"}
-    assert [row["id"] for row in read_table("claims.csv")][:3] == [
+    assert [row["id"] for row in data_rows("claims.csv")][:3] == [
         "fig2-oscillation",
         "fig2-front-bogie",
         "fig2-lead-wheel",
     ]
-    assert len(read_table("transverse_modes.csv")) == 9
+    assert len(data_rows("transverse_modes.csv")) == 9
 
 
 def test_deviations_are_relative_absolute_or_limits():
