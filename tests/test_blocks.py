@@ -179,7 +179,7 @@ GIVEN = {"weight": 1.0, "count": 1, "places": np.zeros(2), "holder": Spring(stif
         {"holder": None},
         {"holder": (Spring(stiffness=1.0),)},
     ],
-    ids=str,
+    ids=range(8),
 )
 def test_fields_of_a_wrong_kind_are_refused(wrong):
     with pytest.raises(TypeError):
