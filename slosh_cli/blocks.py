@@ -178,10 +178,14 @@ def _kind_of(cls: Any, parts: tuple[Any, ...]) -> _BlockType:
 
 
 class _BlockType(types.Type):
-    """numba's type of a block: its class, and the types of its parts where these are open."""
+    """numba's type of a block: its class, and the types of its parts; `chosen` names those of a class of their own."""
 
     def __init__(self, cls: Any, kinds: dict[str, Any]) -> None:
         self.cls, self.kinds = cls, kinds
+        hints = {name: field.hint for name, field in _plan(cls).fields.items()}
+        blocks = [(hints[name], kind.cls) for name, kind in kinds.items() if isinstance(kind, _BlockType)]
+        own = [f"-{cls.__name__}" for hint, cls in blocks if cls is not hint]
+        self.chosen = "".join([*own, *(getattr(kind, "chosen", "") for kind in kinds.values())])
         parts = [str(kind) for kind in kinds.values() if isinstance(kind, (_BlockType, _RowType))]
         super().__init__(name=f"{cls.__module__}.{cls.__qualname__}" + (f"({', '.join(parts)})" if parts else ""))
 
@@ -190,7 +194,7 @@ class _RowType(types.Type):
     """numba's type of a tuple of blocks of one class; their number is data."""
 
     def __init__(self, element: _BlockType) -> None:
-        self.element = element
+        self.element, self.chosen = element, element.chosen
         super().__init__(name=f"row of {element}")
 
 
@@ -275,9 +279,8 @@ def _let_kernels_call(name: str) -> None:
 class _Element(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
         row, place = args
-        if isinstance(row, _RowType) and isinstance(place, types.Integer):
-            return signature(row.element, row, types.intp)
-        return None
+        fits = isinstance(row, _RowType) and isinstance(place, types.Integer)
+        return signature(row.element, row, types.intp) if fits else None
 
 
 @infer_global(len)
@@ -288,9 +291,8 @@ class _Length(AbstractTemplate):
 
 @lower_builtin(operator.getitem, _RowType, types.intp)
 def _get_element(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    row, place = args
-    pointers = builder.bitcast(row, cgutils.voidptr_t.as_pointer())
-    return builder.load(builder.gep(pointers, [builder.add(place, place.type(1))]))
+    pointers = builder.bitcast(args[0], cgutils.voidptr_t.as_pointer())
+    return builder.load(builder.gep(pointers, [builder.add(args[1], args[1].type(1))]))
 
 
 @lower_builtin(len, _RowType)

@@ -65,7 +65,7 @@ class _Kept(NullCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         target_context.refresh()
-        kept = _STORE.load(self._name, _key(sig, target_context.codegen()))
+        kept = _STORE.load(self._name + _chosen(sig), _key(sig, target_context.codegen()))
         try:
             return None if kept is None else _rebuild(target_context, *kept)
         except Exception:  # made by a program that no longer fits, whatever it says
@@ -73,7 +73,13 @@ class _Kept(NullCache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         if not data.library.has_dynamic_globals and all(one.can_cache for one in data.lifted):
-            _STORE.save(self._name, _key(sig, data.codegen), data._reduce(), dumps)
+            _STORE.save(self._name + _chosen(sig), _key(sig, data.codegen), data._reduce(), dumps)
+
+
+def _chosen(signature: Any) -> str:
+    """The classes of parts that a kernel was made for, such as the kind of liquid; see `blocks`."""
+    kinds = signature.args if hasattr(signature, "args") else signature
+    return "".join(getattr(kind, "chosen", "") for kind in kinds)
 
 
 def _key(signature: Any, codegen: Any) -> tuple[Any, ...]:
@@ -105,12 +111,18 @@ def inner_kernel(function: F) -> F:
     return _compile(function, no_cpython_wrapper=True)
 
 
-def is_cached(name: str = "advance.advance") -> bool:
-    """True when the kernel `name` (MODULE.FUNCTION, by default the time loop) was compiled before by this very build.
+def is_cached(name: str, chosen: str = "") -> bool:
+    """True when the kernel `name` (MODULE.FUNCTION) was compiled before by this very build.
 
-    A kernel is kept after the ones that it calls, and with them.
+    `chosen` names the classes of parts that it was made for, as in `ModalLiquid`. A kernel is kept after the ones that
+    it calls, and with them.
     """
-    return bool(getattr(config, "DISABLE_JIT", False)) or _STORE.holds(name)
+    return bool(getattr(config, "DISABLE_JIT", False)) or _STORE.holds(name, chosen)
+
+
+def solver_is_cached(model: str) -> bool:
+    """The same of the time loop for a load of this model of the liquid."""
+    return is_cached("advance.advance", {"modal": "ModalLiquid", "shallow-water": "CellLiquid"}.get(model, ""))
 
 
 def not_kept() -> str:

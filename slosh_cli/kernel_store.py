@@ -78,9 +78,10 @@ class KernelStore:
                 return
         self.trouble = troubles[0]
 
-    def holds(self, name: str) -> bool:
-        """Whether a kernel MODULE.FUNCTION of that name was kept."""
-        return self.folder is not None and any(self.folder.glob(f"*.{name}-*.nbc"))
+    def holds(self, name: str, chosen: str = "") -> bool:
+        """Whether a kernel MODULE.FUNCTION of that name was kept, made for the classes `chosen`."""
+        made_for = f"-{chosen}" if chosen else ""
+        return self.folder is not None and any(self.folder.glob(f"*.{name}-*[0-9]{made_for}.*.nbc"))
 
     def load(self, name: str, key: object) -> Any:
         """What was kept for the function `name` and the signature `key`; None where there is nothing sound."""
@@ -138,7 +139,7 @@ def _claimed(folder: Path) -> str:
         else:
             _tidy(folder)
         if not _trusted_folder(folder):
-            return f"{folder} is not yours alone to write"
+            return f"{folder} can be written by others"
         tempfile.TemporaryFile(dir=folder).close()
         if time.time() - folder.stat().st_mtime > 86400.0:
             os.utime(folder)

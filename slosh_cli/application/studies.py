@@ -58,8 +58,9 @@ class OpenStudy:
         return others
 
     def warm_up(self) -> None:
-        """Load or compile the kernels here and now, where an interrupt is heard."""
-        warm_up(self.study.stop(self.planned.open[0]).scenario)
+        """Load or compile the kernels of every liquid here and now, where an interrupt is heard."""
+        for index in self.study.liquids.values():
+            warm_up(self.study.stop(index).scenario)
 
     def compute(self, workers: Workers, cancel: Event, progress: Callable[[int, int], None]) -> None:
         """Run what is open, told to `progress` as done and total, until all is done or `cancel` is set."""

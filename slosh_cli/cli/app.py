@@ -42,7 +42,7 @@ def tree(word: str = "") -> typer.Typer:
 
 def _slosh(
     context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
 ) -> None:
     """Tank wagons with a sloshing liquid, braking on a real track.
 

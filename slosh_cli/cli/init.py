@@ -19,7 +19,7 @@ def init_command(
         str, typer.Argument(metavar="NAME", help="Packaged scenario to copy; --list shows them all.")
     ] = _DEFAULT,
     output: Annotated[Path | None, option("--output -o", "FILE", _FILE)] = None,
-    names: Annotated[bool, typer.Option("--list", help="List the packaged scenarios and leave.")] = False,
+    names: Annotated[bool, typer.Option("--list", help="List the packaged scenarios and exit.")] = False,
 ) -> ExitCode:
     """Write a commented scenario to start from. Never overwrites a file."""
     from slosh_cli.scenario import (

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -15,21 +15,34 @@ if TYPE_CHECKING:
 _PATIENCE: Final = 2.0
 """Seconds before a bar appears: a shorter run needs none."""
 
-_COMPILE_SECONDS: Final = 40
-"""What compiling the time loop takes on an ordinary machine, in s."""
+_COMPILE_SECONDS: Final = 20
+"""What compiling the time loop for a kind of liquid takes on an ordinary machine, in s."""
 
 _NOTE_SECONDS: Final = 60.0
 """How often a study without a terminal says how far it is, s."""
 
 
-def announce_compilation(
-    what: str = "the solver", seconds: int = _COMPILE_SECONDS, kernel: str = "advance.advance"
-) -> None:
-    """Say that this run takes longer when `kernel` was not compiled before, and whether it is once."""
-    from slosh_cli.compiled import is_cached, not_kept
+def announce_solver(models: Iterable[str]) -> None:
+    """Say that this run takes longer where the solver was not compiled before for these models of the liquid."""
+    from slosh_cli.compiled import solver_is_cached
 
-    if is_cached(kernel):
-        return
+    missing = [model for model in models if not solver_is_cached(model)]
+    if missing:
+        _announce("the solver", len(missing) * _COMPILE_SECONDS)
+
+
+def announce_kernel(what: str, seconds: int, kernel: str) -> None:
+    """Say that this run takes longer where `kernel` was not compiled before."""
+    from slosh_cli.compiled import is_cached
+
+    if not is_cached(kernel):
+        _announce(what, seconds)
+
+
+def _announce(what: str, seconds: int) -> None:
+    """Say what is compiled, how long it takes, and whether it is once."""
+    from slosh_cli.compiled import not_kept
+
     trouble = not_kept()
     if not trouble:
         note(f"Compiling {what}, once: about {seconds} s. Later runs start at once.")

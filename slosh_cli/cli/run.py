@@ -56,9 +56,9 @@ def run_command(
 def _simulate(scenario: "Scenario") -> "Result":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
     from slosh_cli.application.stop import simulate
-    from slosh_cli.cli.progress import RunProgress, announce_compilation
+    from slosh_cli.cli.progress import RunProgress, announce_solver
 
-    announce_compilation()
+    announce_solver([scenario.tank.liquid.model])
     cancel = threading.Event()
     with RunProgress(scenario.name) as progress:
         try:

@@ -81,7 +81,7 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
         traceback.print_exception(error)
     message = f"{type(error).__name__}: {error}"
     text = (
-        f"slosh failed on its own account: {message}\n"
+        f"slosh itself failed: {message}\n"
         f"Please report this with the command and the scenario; {_DEBUG}=1 makes slosh show where it happened."
     )
     _say_error(text, as_json, code="internal", message=message, where="")

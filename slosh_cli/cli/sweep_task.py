@@ -66,13 +66,13 @@ def _compute(task: Task, work: "OpenStudy") -> bool:
 
 def _prepare(task: Task, work: "OpenStudy") -> None:
     """Compile or load the kernels where an interrupt is heard; note in the journal who computes."""
-    from slosh_cli.cli.progress import announce_compilation
+    from slosh_cli.cli.progress import announce_solver
 
     others = work.begin_session()
     if others:
         warn(f"{others} stops in the journal are by another build of the solver; --fresh computes them anew")
     if task.cluster is None:
-        announce_compilation()
+        announce_solver(work.study.liquids)
         work.warm_up()
 
 

@@ -72,7 +72,7 @@ def _excite(
     scenario_file: ScenarioFile,
     deceleration: Annotated[str | None, option("--deceleration", "A", _LEVEL)] = None,
     ramp: Annotated[str | None, option("--ramp", "TIME", _RAMP)] = None,
-    duration: Annotated[str, typer.Option("--duration", metavar="TIME", help="How long to look at the tank.")] = "40 s",
+    duration: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the excitation.")] = "40 s",
     table: Annotated[Path | None, option("--table", "FILE.csv", _COURSE)] = None,
     interval: Annotated[str, typer.Option("--interval", metavar="TIME", help="Time between rows.")] = "10 ms",
     overrides: Overrides = None,
@@ -86,7 +86,7 @@ def _excite(
     from slosh_cli.application.excitation import EXCITATION_FILES, excited
     from slosh_cli.application.keeping import folder_of_run
     from slosh_cli.application.prescription import Prescription
-    from slosh_cli.cli.progress import announce_compilation
+    from slosh_cli.cli.progress import announce_kernel
     from slosh_cli.cli.reading import load_given
     from slosh_cli.scenario import load_any_scenario
 
@@ -94,7 +94,7 @@ def _excite(
     prescription = Prescription.read(deceleration, ramp, duration, table, interval, "--{}".format)
     folder = folder_of_run(scenario, output, overrides, EXCITATION_FILES, note, prescription.settings)
     if scenario.tank.liquid.model in _KERNELS:
-        announce_compilation("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
+        announce_kernel("the liquid", 10, _KERNELS[scenario.tank.liquid.model])
     return _tell(excited(prescription, scenario), folder, as_json=as_json)
 
 

@@ -25,7 +25,7 @@ def validate_command(
         typer.Argument(metavar="[NAME]...", help="Cases to run; all without a name.", show_default=False),
     ] = None,
     as_json: AsJson = False,
-    list_only: Annotated[bool, typer.Option("--list", help="Name the cases and what they ask, run none.")] = False,
+    list_only: Annotated[bool, typer.Option("--list", help="List the cases and their questions; run none.")] = False,
     output: Annotated[Path | None, option("--output -o", "DIR", _FOLDER)] = None,
 ) -> ExitCode:
     """Check the program against published and exact results.
@@ -49,9 +49,9 @@ def _carry_out(names: Sequence[str], missing: "Sequence[CaseData]", folder: Path
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.validation import keep_validation, validate
     from slosh_cli.cli.keeping import told
-    from slosh_cli.cli.progress import announce_compilation, counting
+    from slosh_cli.cli.progress import announce_solver, counting
 
-    announce_compilation()
+    announce_solver(("modal", "rigid"))
     with counting("cases") as progress:
         results = validate(names, progress)
     if not as_json:

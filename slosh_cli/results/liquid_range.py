@@ -130,5 +130,5 @@ def _slot_check(tank: Tank, head: float) -> Check:
         SLOT_LIMIT,
         f"Under its head the slot above the roof may hold up to {share:.0%} of the room above the liquid: the surface "
         "elsewhere sinks for it, so that the shift of weight and the wheel unloading come out too large. Raise "
-        "tank.liquid.slot_speed, or take the load of a tank so full for rigid (tank.liquid.model: rigid).",
+        "tank.liquid.slot_speed, or treat the load of so full a tank as rigid (tank.liquid.model: rigid).",
     )

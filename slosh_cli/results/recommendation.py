@@ -79,7 +79,7 @@ def recommend(tank: Tank, deceleration: float | None) -> Recommendation:
             "interFoam)."
         )
         if walls:
-            sentence = "Use tank.liquid.model: shallow-water: the modal liquid knows no baffles."
+            sentence = "Use tank.liquid.model: shallow-water: the modal liquid has no baffles."
         return Recommendation(None, None, None, None, changeover, sentence)
     size = abs(deceleration)
     linear = linear_error(size * tank.length / STANDARD_GRAVITY / least)
@@ -96,7 +96,7 @@ def recommend(tank: Tank, deceleration: float | None) -> Recommendation:
 def _reason(tank: Tank, size: float, model: _MovingLiquid) -> str:
     """Why this model, at a deceleration of this `size` (m/s^2); the liquid's own model is left out of account."""
     if tank.baffles:
-        return "the modal liquid knows no baffles"
+        return "the modal liquid has no baffles"
     room, depth = room_and_depth(tank)
     moved, excess = size * tank.length / STANDARD_GRAVITY, frequency_excess(tank, STANDARD_GRAVITY)
     outside = moved > min(room, depth) if model == "modal" else excess > FREQUENCY_LIMIT

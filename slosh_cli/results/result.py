@@ -50,7 +50,7 @@ class Status(StrEnum):
 _REMEDIES = {
     Status.STOPPED: "",
     Status.TIME_LIMIT: "Raise solver.time_limit, or brake harder: brake and resistance may be too weak.",
-    Status.PITCH_LIMIT: "A body pitched beyond what small angles can describe. Lower the torque, "
+    Status.PITCH_LIMIT: "A body pitched further than small angles can describe. Lower the torque, "
     "or compare with `--set tank.liquid.model=rigid`.",
     Status.FAILED: "Look at the last moments in the history file.",
 }

@@ -157,7 +157,7 @@ def residual_cause(scenario: Scenario, lifts: int) -> str:
     if elements > rail_reach.TOLD:
         return "the rail's elements are long for this track; refine track.domain.element_length, or leave it out"
     if scenario.tank.liquid.model == "shallow-water":
-        return "bores strike the end walls within steps; it falls with solver.tolerance, slowly"
+        return "bores strike the end walls within steps; a lower solver.tolerance reduces it slowly"
     return "steps are long for this stop; lower solver.tolerance"
 
 

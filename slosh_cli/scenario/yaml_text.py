@@ -234,7 +234,7 @@ def _syntax(error: Exception, text: str) -> tuple[int | None, str, str, str]:
     if "'\\t'" in given:
         fix = "indent with spaces, not tabs"
     elif "single document" in str(error.context):
-        fix = "keep one scenario to a file"
+        fix = "write one scenario per file"
     elif "undefined alias" in given:
         fix = "define the anchor (`&name`) before it is used"
     return line, rule, given, fix

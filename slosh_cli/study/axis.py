@@ -150,7 +150,7 @@ def _range(entry: str, parts: list[str], unit: str) -> list[str]:
     count = round((stop - start) / step)
     if abs((stop - start) / step - count) > Decimal("1e-9") * max(count, 1):
         last = f"{_decimal(start + int((stop - start) / step) * step)}:{_decimal(step)}{unit and f' {unit}'}"
-        rule = "must reach its stop in whole steps, because both ends are in"
+        rule = "must reach its stop in whole steps, because both ends count"
         raise ValueRefused(
             rule, given, f"write a stop within reach, such as `{_decimal(start)}:{last}`, or another step"
         )

@@ -34,9 +34,9 @@ def seconds_per_stop(study: "Study", planned: "Plan", journal: "Journal | None")
     known = journal.mean_seconds() if journal is not None and planned.open else None
     if known is not None:
         return known
-    from slosh_cli.compiled import is_cached
+    from slosh_cli.compiled import solver_is_cached
 
-    if not planned.open or not is_cached():
+    if not planned.open or not all(solver_is_cached(model) for model in study.liquids):
         return _TYPICAL
     count = min(_SAMPLES, len(planned.open))
     chosen = [planned.open[(2 * k + 1) * len(planned.open) // (2 * count)] for k in range(count)]

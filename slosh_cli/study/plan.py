@@ -98,6 +98,14 @@ class Study:
             "liquid": values.get(LIQUID, str(liquid.model)),
         }
 
+    @property
+    def liquids(self) -> dict[str, int]:
+        """The models of the load, each with a stop that has it."""
+        for number, axis in enumerate(self.axes):
+            if axis.key == LIQUID:
+                return {model: self._index({number: place}) for place, model in enumerate(axis.values)}
+        return {str(self.base.tank.liquid.model): 0}
+
     def check(self) -> None:
         """Raise ScenarioError for the first value of an axis that makes no sound scenario in any combination.
 

@@ -35,6 +35,7 @@ def solver(monkeypatch: pytest.MonkeyPatch) -> Solver:
     stand_in = Solver()
     simulate, compiled = ModuleType("slosh_cli.results.simulate"), ModuleType("slosh_cli.compiled")
     simulate.simulate = stand_in.simulate  # type: ignore[attr-defined]
+    compiled.solver_is_cached = lambda *_: True  # type: ignore[attr-defined]
     compiled.is_cached = lambda *_: True  # type: ignore[attr-defined]
     compiled.not_kept = lambda: ""  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, simulate.__name__, simulate)

@@ -337,7 +337,7 @@ def test_the_history_holds_the_scenario_as_it_was_run(slosh: Slosh, solver: Solv
 
 
 def test_the_first_run_announces_the_compilation(slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "solver_is_cached", lambda *_: False)
     outcome = slosh("run", PAPER, "--no-figures", "--json")
     assert outcome.err.startswith("Compiling the solver, once")
     strict_json(outcome.out)
@@ -346,7 +346,7 @@ def test_the_first_run_announces_the_compilation(slosh: Slosh, solver: Solver, m
 def test_where_nothing_can_be_kept_it_says_so_and_how_to_mend_it(
     slosh: Slosh, solver: Solver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "is_cached", lambda *_: False)
+    monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "solver_is_cached", lambda *_: False)
     monkeypatch.setattr(sys.modules["slosh_cli.compiled"], "not_kept", lambda: "cannot write into /nowhere")
     err = slosh("run", PAPER, "--no-figures", "--json").err
     assert "in memory, for this run only" in err

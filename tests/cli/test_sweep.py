@@ -37,7 +37,7 @@ def template() -> Result:
 def quick(monkeypatch: pytest.MonkeyPatch, template: Result) -> QuickSolver:
     solver = QuickSolver(template)
     monkeypatch.setattr(slosh_cli.results.simulate, "simulate", solver.simulate)
-    monkeypatch.setattr("slosh_cli.compiled.is_cached", lambda *_: True)
+    monkeypatch.setattr("slosh_cli.compiled.solver_is_cached", lambda *_: True)
     monkeypatch.setattr("slosh_cli.report.study_figures.draw_study", _touch)
     return solver
 

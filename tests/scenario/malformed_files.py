@@ -61,7 +61,7 @@ YAML_SYNTAX = (
     ),
     one(
         "two scenarios in a file", "contact:\n", "---\ncontact:\n",
-        (38, "", "must be valid YAML", "another document", "keep one scenario to a file"),
+        (38, "", "must be valid YAML", "another document", "write one scenario per file"),
     ),
     one(
         "control character", "description: A wagon", "description: A \x07 wagon",
