@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ctypes
 import operator
+import struct
 from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self, cast, dataclass_transform, get_origin, get_type_hints
 
@@ -27,6 +28,7 @@ from numba.np import numpy_support as np_support
 from slosh_cli.arrays import ArrayKind
 
 _WORD = 8
+_FLOAT, _BITS = struct.Struct("d"), struct.Struct("q")
 
 
 @dataclass_transform(kw_only_default=True)
@@ -47,50 +49,52 @@ class Block:
     def __init__(self, **given: Any) -> None:
         cls: Any = type(self)
         plan = _plan(cls)
-        if given.keys() != plan.fields.keys():
-            raise TypeError(f"{cls.__name__} takes {', '.join(plan.fields)}, but {', '.join(given)} were given")
-        memory = np.zeros(plan.size, dtype=np.int64)
-        own, parts = self.__dict__, []
-        own["_memory"], own["_numbers"], own["address"] = memory, memory.view(np.float64), _address(memory)
-        for name, field in plan.fields.items():
+        if given.keys() != plan.keys():
+            raise TypeError(f"{cls.__name__} takes {', '.join(plan)}, but {', '.join(given)} were given")
+        own: dict[str, Any] = self.__dict__
+        words: list[int] = []
+        parts = []
+        for name, field in plan.items():
             value = given[name]
             if field.hint is float:
-                own["_numbers"][field.place] = float(value)
+                words.append(_BITS.unpack(_FLOAT.pack(float(value)))[0])
             elif field.hint is int:
-                memory[field.place] = operator.index(value)
+                words.append(operator.index(value))
             elif field.array is not None:
                 own[name] = array = _fitting(name, field.array, value)
-                words = (array.size, array.itemsize, _address(array), *array.shape, *array.strides)
-                memory[field.place + 2 : field.place + field.words] = words
+                words += (0, 0, array.size, array.itemsize, _address(array), *array.shape, *array.strides)
             else:
                 own[name] = part = _as_part(name, field, value)
                 parts.append(part.kind)
-                memory[field.place] = part.address
+                words.append(part.address)
+        own["_memory"] = memory = np.array(words, dtype=np.int64)
+        own["_integers"], own["address"] = memoryview(cast(Any, memory)), _address(memory)
+        own["_floats"] = own["_integers"].cast("B").cast("d")
         own["kind"] = _kind_of(cls, tuple(parts))
 
     def __getattr__(self, name: str) -> Any:
         place, view = self._number(name)
-        return view[place].item()
+        return view[place]
 
     def __setattr__(self, name: str, value: float) -> None:
         place, view = self._number(name)
-        view[place] = value if view.dtype == np.float64 else operator.index(cast(Any, value))
+        view[place] = value
 
     def __reduce__(self) -> Any:
         raise TypeError(f"{type(self).__name__} is its address, which no copy and no other process has: use `replaced`")
 
     def _number(self, name: str) -> tuple[int, Any]:
         cls: Any = type(self)
-        field = _plan(cls).fields.get(name)
+        field = _plan(cls).get(name)
         if field is None or field.hint not in (float, int):
             raise AttributeError(f"{cls.__name__} has no number {name!r}")
-        return field.place, self.__dict__["_numbers" if field.hint is float else "_memory"]
+        return field.place, self.__dict__["_floats" if field.hint is float else "_integers"]
 
     @classmethod
     def blank(cls, size: int = 0, **given: Any) -> Self:
         """A block whose numbers are zero and whose vectors hold `size` zeros, but for what is `given`."""
         own: Any = cls
-        for name, field in _plan(own).fields.items():
+        for name, field in _plan(own).items():
             if name not in given:
                 array = field.array
                 given[name] = 0 if array is None else np.zeros(array.dimensions * (size,), dtype=array.dtype)
@@ -99,7 +103,7 @@ class Block:
     def replaced(self, **changes: Any) -> Self:
         """A copy with other values of some fields; arrays and parts that stay are shared."""
         cls: Any = type(self)
-        return type(self)(**{name: changes.get(name, getattr(self, name)) for name in _plan(cls).fields})
+        return type(self)(**{name: changes.get(name, getattr(self, name)) for name in _plan(cls)})
 
 
 class _Row(tuple[Block, ...]):
@@ -112,28 +116,22 @@ class _Row(tuple[Block, ...]):
         self.address, self.kind = _address(self._list), _RowType(blocks[0].kind)
 
 
-class _Field(NamedTuple):  # what is annotated, and the words that it takes in a block's memory
+class _Field(NamedTuple):  # what is annotated, and its place in a block's memory, in words
     hint: Any
     array: ArrayKind | None
     place: int
-    words: int
-
-
-class _Plan(NamedTuple):  # the fields of a class of blocks, and how many words of memory they take
-    fields: dict[str, _Field]
-    size: int
 
 
 @cache
-def _plan(cls: Any) -> _Plan:
+def _plan(cls: Any) -> dict[str, _Field]:
+    """The fields of a class of blocks."""
     fields, size = {}, 0
     for name, hint in get_type_hints(cls, include_extras=True).items():
         if name != "address":
             array = next((note for note in getattr(hint, "__metadata__", ()) if isinstance(note, ArrayKind)), None)
-            words = 5 + 2 * array.dimensions if array else 1  # the members of numba's own array
-            fields[name] = _Field(hint, array, size, words)
-            size += words
-    return _Plan(fields, size)
+            fields[name] = _Field(hint, array, size)
+            size += 5 + 2 * array.dimensions if array else 1  # the members of numba's own array
+    return fields
 
 
 def _address(array: Any) -> int:
@@ -167,7 +165,7 @@ def _kind_of(cls: Any, parts: tuple[Any, ...]) -> _BlockType:
     """numba's type of a block of `cls` with such parts."""
     kinds: dict[str, Any] = {}
     rest = iter(parts)
-    for name, field in _plan(cls).fields.items():
+    for name, field in _plan(cls).items():
         if array := field.array:
             kinds[name] = types.Array(np_support.from_dtype(array.dtype), array.dimensions, "C")
         elif field.hint in (float, int):
@@ -182,7 +180,7 @@ class _BlockType(types.Type):
 
     def __init__(self, cls: Any, kinds: dict[str, Any]) -> None:
         self.cls, self.kinds = cls, kinds
-        hints = {name: field.hint for name, field in _plan(cls).fields.items()}
+        hints = {name: field.hint for name, field in _plan(cls).items()}
         blocks = [(hints[name], kind.cls) for name, kind in kinds.items() if isinstance(kind, _BlockType)]
         own = [f"-{cls.__name__}" for hint, cls in blocks if cls is not hint]
         self.chosen = "".join([*own, *(getattr(kind, "chosen", "") for kind in kinds.values())])
@@ -242,7 +240,7 @@ def _kernel_type(block: _BlockType, name: str) -> Any:
 
 def _pointer_to(context: Any, builder: Any, block: _BlockType, value: Any, name: str) -> tuple[Any, Any]:
     """The model of a field, and a pointer to it."""
-    place = _plan(block.cls).fields[name].place
+    place = _plan(block.cls)[name].place
     model = context.data_model_manager[block.kinds[name]]
     pointer = cgutils.pointer_add(builder, value, place * _WORD, model.get_data_type().as_pointer())
     return model, pointer

@@ -152,9 +152,11 @@ def _check_mass_matrix(wagon: WagonModel, liquid: Slosh) -> None:
         return
     rows = np.outer(liquid.lambda_1, wagon.tank_row)
     rows[:, CAR_PITCH] += liquid.lambda_02
-    mass = np.block([[wagon.mass, rows.T], [rows, np.diag(liquid.mu)]])
-    size = np.sqrt(np.diag(mass))
-    if np.linalg.eigvalsh(mass / np.outer(size, size))[0] <= 0:
+    size = wagon.coordinates
+    mass = np.diag(np.concatenate([np.zeros(size), liquid.mu]))
+    mass[:size, :size], mass[size:, :size], mass[:size, size:] = wagon.mass, rows, rows.T
+    scale = np.sqrt(np.diag(mass))
+    if np.linalg.eigvalsh(mass / np.outer(scale, scale))[0] <= 0:
         raise PhysicsError(
             "The mass matrix is not positive definite: the slosh coefficients carry more mass than the tank holds. "
             "Give lambda_1, lambda_02 and mu of the whole tank; lambda_1^2/mu is part of the liquid's mass.",
