@@ -11,6 +11,7 @@ from pathlib import Path
 from slosh_cli.results.answers import Answer, PerWheel, Shown
 from slosh_cli.results.channels import CHANNELS, TIME, channel, slosh_amplitude
 from slosh_cli.results.result import Result
+from slosh_cli.scenario import Scenario
 
 PAGE = Path(__file__).with_name("answers.md")
 INTRODUCTION = """# What a run answers
@@ -48,7 +49,8 @@ def page() -> str:
 def answer_row(one: Answer) -> str:
     """One line of the table of answers."""
     meaning = f"{one.meaning} (per wheel)" if one.kind == PerWheel else one.meaning
-    source = f"`{one.given}`" if one.given else "other answers" if one.of else "the run"
+    key = one.given.split(".")[0] in Scenario.model_fields
+    source = f"`{one.given}`" if key else "the scenario" if one.given else "other answers" if one.of else "the run"
     columns = numbered(one.columns[0]) if one.kind == PerWheel else one.columns[0]
     shown = {Shown.JSON: "yes", Shown.HISTORY: "yes", Shown.SUMMARY: f"`{columns}`", Shown.STUDY: f"`{columns}`"}
     cells = [text if output in one.shown else "" for output, text in shown.items()]

@@ -136,7 +136,7 @@ def _conditions(study: Study, page: str) -> str:
     words += [f"{name_of(axis)} {axis.values[0]}" for axis in fixed]
     keys = {axis.key for axis in study.axes}
     if TORQUE not in keys:
-        words.append(f"{study.base.braking.torque / 1e3:g} kN m per wheel")
+        words.append(f"{study.base.nominal_torque / 1e3:g} kN m per wheel")
     tank = study.base.tank
     words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
     words += [f"fill {tank.fill:g}"] if "tank.fill" not in keys else []

@@ -145,7 +145,9 @@ def stop_deceleration(scenario: Scenario) -> float:
     speed, radius = brake.initial_speed, wagon.wheelset.wheel_radius
     drag = resistance.constant + resistance.linear * speed + resistance.quadratic * speed**2
     mass = total_mass(scenario)
-    rolling = (8.0 * brake.torque / radius + drag) / (mass + 4.0 * wagon.wheelset.spin_inertia / radius**2)
+    rolling = (8.0 * scenario.brake_torque(speed) / radius + drag) / (
+        mass + 4.0 * wagon.wheelset.spin_inertia / radius**2
+    )
     return min(rolling, scenario.contact.adhesion.mu0 * STANDARD_GRAVITY + drag / mass)
 
 

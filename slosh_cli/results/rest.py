@@ -64,7 +64,7 @@ def holding_force(scenario: Scenario, static_loads: Sequence[float] | Vector) ->
 
     `static_loads` (4,) N are those of the wheels on one rail.
     """
-    brake, wagon = scenario.braking.torque / scenario.wagon.wheelset.wheel_radius, scenario.wagon
+    brake, wagon = scenario.brake_torque(0.0) / scenario.wagon.wheelset.wheel_radius, scenario.wagon
     wheels = np.minimum(brake, scenario.contact.adhesion.mu0 * np.asarray(static_loads, dtype=np.float64))
     return float(wheels.sum() / HALF + wagon.running_resistance.constant)
 

@@ -94,8 +94,8 @@ class Record(Answers):
         "m/s", "V0, the speed at t = 0", Place.CONDITIONS, given="braking.initial_speed", needed=True,
         column="v0_km_h", per=1 / 3.6)
     torque_N_m: float = derived(
-        "N m", "brake torque per wheel", Place.CONDITIONS, given="braking.torque", needed=True,
-        column="torque_kN_m", per=1e3)
+        "N m", "brake torque per wheel, fully applied, at the initial speed", Place.CONDITIONS,
+        given="nominal_torque", needed=True, column="torque_kN_m", per=1e3)
     onset_s: float = derived(
         "s", "time at which the brake sets in", Place.CONDITIONS, given="braking.onset", needed=True,
         shown=Shown.HISTORY)

@@ -167,7 +167,7 @@ def braked_wheel_loads(scenario: Scenario) -> Vector:
     model = wagon_model(scenario.wagon, tank.bottom_height, frozen_load(tank))
     slowing = stop_deceleration(scenario)
     drive = model.weight + slowing * model.mass[:, POSITION]
-    np.add.at(drive, model.frame, scenario.braking.torque)
+    np.add.at(drive, model.frame, scenario.nominal_torque)
     free, wheels = np.arange(1, model.first_wheel), np.arange(model.first_wheel, model.first_spin)
     place = np.zeros(model.coordinates)
     place[free] = np.linalg.solve(model.stiffness[np.ix_(free, free)], drive[free])
@@ -177,7 +177,7 @@ def braked_wheel_loads(scenario: Scenario) -> Vector:
 def lock_check(scenario: Scenario) -> Check:
     """Which wheels are bound to lock: their brake asks for more than the rail can give at any slip."""
     given = scenario.contact.adhesion.mu0 * np.maximum(braked_wheel_loads(scenario), 1.0)
-    asked = scenario.braking.torque / scenario.wagon.wheelset.wheel_radius
+    asked = scenario.brake_torque(0.0) / scenario.wagon.wheelset.wheel_radius
     over = ", ".join(f"wheel {i}" for i, force in enumerate(given, 1) if asked > force)
     return Check(
         "brake force over adhesion",

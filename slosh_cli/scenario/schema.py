@@ -42,6 +42,15 @@ class Scenario(Root):
     solver: Solver = Field(default=Solver.model_construct(), description="Accuracy and patience.")
     output: Output = Field(default=Output.model_construct(), description="What is written.")
 
+    def brake_torque(self, speed: float) -> float:
+        """Torque (N m) of a fully applied wheel that rolls at `speed` (m/s)."""
+        return self.braking.torque_at(speed, self.wagon.wheelset.wheel_radius)
+
+    @property
+    def nominal_torque(self) -> float:
+        """Torque (N m) of a fully applied wheel at the initial speed."""
+        return self.brake_torque(self.braking.initial_speed)
+
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
         return self.model_copy(update={"tank": tank})

@@ -155,6 +155,10 @@ class Braking(Part):
         default=0.02, description="The wagon counts as stopped when its speed falls to this, m/s."
     )
 
+    def torque_at(self, speed: float, wheel_radius: float) -> float:  # noqa: ARG002 - other brakes depend on them
+        """Torque (N m) of a fully applied wheel of `wheel_radius` (m) that rolls at `speed` (m/s)."""
+        return self.torque
+
 
 class Solver(Part):
     """Accuracy and patience."""

@@ -75,11 +75,13 @@ class Short(Judge):
 
     def _mapping(self) -> str:
         """The mapping in words."""
-        parts = _parts(self.whole)
-        if len(parts) == 1:
-            return f"a mapping of {all_of(parts[0].model_fields)}"
-        tag = next(name for name, entry in parts[0].model_fields.items() if get_origin(entry.annotation) is Literal)
-        return f"a mapping with its `{tag}`"
+        forms: dict[str, None] = {}
+        for part in _parts(self.whole):
+            tag = next(
+                (name for name, entry in part.model_fields.items() if get_origin(entry.annotation) is Literal), ""
+            )
+            forms[f"a mapping with its `{tag}`" if tag else f"a mapping of {all_of(part.model_fields)}"] = None
+        return " or ".join(forms)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
         return replace(self, whole=source)._before(source, handler)

@@ -24,7 +24,7 @@ from slosh_cli.tank.still import shallow_liquid
 from slosh_cli.track.contact import contact_model
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel, critical_speed, rail_model
-from slosh_cli.wagon.brake import StepBrake
+from slosh_cli.wagon.brake import brake_of
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION, WagonModel, wagon_model, wheel_positions
 
 HALF = 0.5
@@ -98,7 +98,7 @@ def _vehicle(scenario: Scenario) -> Vehicle:
         rail,
         contact,
         Line.blank(resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic])),
-        StepBrake.blank(full=scenario.braking.torque, onset=scenario.braking.onset),
+        brake_of(scenario),
         _scales(scenario, wagon, liquid, start),
         start,
     )

@@ -91,7 +91,7 @@ class Study:
         values = self.values(index)
         braking, liquid = self.base.braking, self.base.tank.liquid
         speed = parse_quantity(values[SPEED], "speed") if SPEED in values else braking.initial_speed
-        torque = parse_quantity(values[TORQUE], "torque") if TORQUE in values else braking.torque
+        torque = parse_quantity(values[TORQUE], "torque") if TORQUE in values else self.base.brake_torque(speed)
         return {
             "v0_km_h": _tidy(speed * 3.6),
             "torque_kN_m": _tidy(torque / 1e3),

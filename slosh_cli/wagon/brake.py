@@ -12,6 +12,7 @@ import math
 
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.scenario import Scenario
 
 
 class StepBrake(Block):
@@ -40,3 +41,8 @@ class StepBrake(Block):
     def is_on(self):
         """Whether the brake has set in."""
         return self.breaks > 0
+
+
+def brake_of(scenario: Scenario) -> StepBrake:
+    """The brake of a scenario's wagon, not yet applied."""
+    return StepBrake.blank(full=scenario.brake_torque(0.0), onset=scenario.braking.onset)

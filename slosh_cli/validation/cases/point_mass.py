@@ -41,8 +41,8 @@ def compute(data: CaseData) -> Outcome:
 
 def _expected(case: Scenario) -> tuple[float, float]:
     wagon, braking = point_wagon(case), case.braking
-    nu = _creepage(case, wagon, braking.torque / wagon.wheel_radius)
-    return stopping(wagon, braking.initial_speed, braking.torque, braking.onset, braking.stop_speed, nu)
+    nu = _creepage(case, wagon, case.brake_torque(0.0) / wagon.wheel_radius)
+    return stopping(wagon, braking.initial_speed, case.brake_torque(0.0), braking.onset, braking.stop_speed, nu)
 
 
 def _creepage(case: Scenario, wagon: PointWagon, force: float) -> float:
