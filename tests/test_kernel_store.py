@@ -25,7 +25,6 @@ NOBODY = 65534
 
 PROBE = """
 from slosh_cli.compiled import kernel
-from slosh_cli.wagon.brake import StepBrake
 
 @kernel
 def twice(brake):
@@ -34,9 +33,9 @@ def twice(brake):
 """
 ASK = """
 from slosh_cli import compiled
-from slosh_cli.wagon.brake import StepBrake
+from slosh_cli.wagon.brake import Application
 from slosh_cli.wagon.probe import twice
-value = twice(StepBrake(full=100.0, onset=0.5, breaks=1))
+value = twice(Application.step().brake(100.0, 0.5).replaced(breaks=1))
 print(value, sum(twice.stats.cache_hits.values()), bool(compiled.not_kept()))
 """
 """Prints the torque that the compiled code gives, how often it was kept code, and whether nothing can be kept."""

@@ -15,7 +15,7 @@ from slosh_cli.track.contact import ContactModel
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel
 from slosh_cli.track.moving import RailWork, rail_work
-from slosh_cli.wagon.brake import StepBrake
+from slosh_cli.wagon.brake import Brake
 from slosh_cli.wagon.model import WagonModel
 
 BRAKE, CREEP, SUSPENSION, FOUNDATION, RESISTANCE, SLOSH_DAMPING, GRADIENT, SLOPE, LOSSES = range(9)
@@ -141,7 +141,7 @@ class Vehicle(Block):
     rail: RailModel
     contact: ContactModel
     line: Line
-    brake: StepBrake
+    brake: Brake
     scales: Scales
     points: tuple[Point, ...]
     ride: Ride
@@ -192,7 +192,7 @@ def new_vehicle(
     rail: RailModel,
     contact: ContactModel,
     line: Line,
-    brake: StepBrake,
+    brake: Brake,
     scales: Scales,
     start: Point,
 ) -> Vehicle:

@@ -140,7 +140,7 @@ def test_nothing_but_the_wheels_takes_momentum(shipped, until):
     train = integrate(stop_).train
     assert vehicle.account.locked_time.max() == 0.0
     wagon, brake = vehicle.wagon, vehicle.brake
-    braked = brake.full * (train.time - brake.onset)
+    braked = brake.count * (train.time - brake.starts[0])
     taken = float(np.sum(wagon.mass[-1, -1] * (start.v[-4:] - spins) + braked)) / wagon.wheel_radius
     after = whole_momentum(vehicle)
     assert before - after == pytest.approx(taken, rel=5e-6)

@@ -93,7 +93,7 @@ def test_nothing_but_wheels_and_resistance_takes_momentum(stop, shipped, until, 
     assert max(result.locked_time_s) == 0.0
     wagon, brake = vehicle.wagon, vehicle.brake
     spin = vehicle.points[START].v[-4:] - spins
-    braked = brake.full * (run.train.time - brake.onset)
+    braked = brake.count * (run.train.time - brake.starts[0])
     by_wheels = float(np.sum(wagon.mass[-1, -1] * spin + braked)) / wagon.wheel_radius
     constant, linear, quadratic = vehicle.line.resistance
     speed = result.channels["speed"]

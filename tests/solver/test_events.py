@@ -78,7 +78,7 @@ def held_wheel(near_event):
         start.v[WHEEL_SPIN] = 0.0
         start.v[WHEEL_HEAVE] = -fall
         creep, *_ = vehicle.contact.creep_force(start.normal[0], start.v[0], start.v[0])
-        vehicle.brake.full = creep * vehicle.wagon.wheel_radius / (1.0 - gap)
+        vehicle.brake.count = creep * vehicle.wagon.wheel_radius / (1.0 - gap)
         return stop
 
     return build
@@ -100,7 +100,7 @@ def test_wheel_about_to_turn_again_turns(held_wheel, gap, fall, first_step):
         start, began = stop.vehicle.points[START], [values.copy() for values in state_of(stop)]
         vehicle, train, outcome = march(stop, steps, locked=[0], first_step=first_step)
         assert outcome == loop.RUNNING
-        creep = start.creep[0] * vehicle.wagon.wheel_radius / vehicle.brake.full
+        creep = start.creep[0] * vehicle.wagon.wheel_radius / vehicle.brake.count
         assert creep < 1.0 + 1e-5 or not vehicle.locked[0]
         turned = start.v[WHEEL_SPIN] > 0.0
         for values, before in zip(state_of(stop), began, strict=True):
@@ -158,7 +158,7 @@ def test_brake_at_its_limit_holds_while_the_creep_force_grows_no_faster(held_whe
     """At `f R = T` the rates decide; below and above it they do not."""
     stop = held_wheel(0.0, 0.0)
     ramp = Ramp(held=0.0, rate=0.0, begun=0.0, breaks=1)
-    vehicle, torque = with_parts(stop, brake=ramp).vehicle, stop.vehicle.brake.full
+    vehicle, torque = with_parts(stop, brake=ramp).vehicle, stop.vehicle.brake.count
     start, contact = vehicle.points[START], vehicle.contact
 
     def holds(share, fall, torque_rate):
@@ -182,7 +182,7 @@ def test_brake_at_its_limit_holds_while_the_creep_force_grows_no_faster(held_whe
 def test_brake_without_torque_lets_go(held_wheel):
     """No division by a torque of nothing: the wheel turns from that instant on, on the rail or off it."""
     vehicle, values = held_wheel(0.0, 0.0).vehicle, np.zeros(4)
-    vehicle.brake.full = 0.0
+    vehicle.brake.count = 0.0
     vehicle.locked[0] = True
     for creep in (0.0, 1e3):
         vehicle.points[START].creep[0] = creep
@@ -219,7 +219,7 @@ class Switch(Block):
 def test_torque_that_jumps_holds_a_locked_wheel_or_lets_it_go(held_wheel, share, held):
     """At a break of the torque the wheel asks for `f R`: it stays locked where the torque bears that afterwards."""
     stop = held_wheel(0.0, 0.0)
-    torque = stop.vehicle.brake.full
+    torque = stop.vehicle.brake.count
     brake = Switch(first=2.0 * torque, second=share * torque, change=0.0, breaks=1)
     vehicle = with_parts(stop, brake=brake).vehicle
     vehicle.locked[0] = True
@@ -232,7 +232,7 @@ def test_torque_that_jumps_holds_a_locked_wheel_or_lets_it_go(held_wheel, share,
 def test_each_stage_is_held_against_the_torque_of_its_own_instant(held_wheel):
     """The torque grows: the middle stage's `f R` exceeds that of its instant, not that of the step's end."""
     stop = held_wheel(0.0, 0.0)
-    step, begun, slope = 0.1, 3.0, stop.vehicle.brake.full  # N m/s
+    step, begun, slope = 0.1, 3.0, stop.vehicle.brake.count  # N m/s
     vehicle = with_parts(stop, brake=Ramp(held=slope * begun, rate=slope, begun=begun, breaks=1)).vehicle
     train = new_train((vehicle,), stop.train.control, step)
     vehicle.locked[0], train.time = True, begun

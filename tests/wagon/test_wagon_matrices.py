@@ -93,7 +93,7 @@ def test_one_rail_carries_and_moves_half_of_the_wagon(case):
     # suspension units are given per unit of the planar model: not halved
     assert np.diag(vehicle.wagon.stiffness)[7:11] == pytest.approx(2.6e6)
     assert np.diag(vehicle.wagon.damping)[7:11] == pytest.approx(1.5e4)
-    assert vehicle.brake.full == 5e3  # per wheel: not halved
+    assert vehicle.brake.count == 5e3  # per wheel: not halved
     for mode, frequency in zip(range(vehicle.liquid.recorded // 2), (0.69,), strict=False):
         halves = (vehicle.liquid.lambda_1[mode], vehicle.liquid.lambda_02[mode], vehicle.liquid.mu[mode])
         assert halves == pytest.approx((137071 / 2, -68461 / 2, 442163 / 2))
