@@ -75,6 +75,7 @@ _ENERGY = (
     Channel("energy_resistance", "J", "energy taken by the running resistance so far"),
     Channel("energy_slosh_damping", "J", "energy taken by slosh damping so far"),
     Channel("energy_slope_work", "J", "work done by the wheels' own dip in the rail so far"),
+    Channel("energy_gradient", "J", "work done against gravity on the gradient so far"),
     Channel("energy_residual", "1", "residual of the energy ledger over the initial kinetic energy"),
 )
 

@@ -27,6 +27,7 @@ from slosh_cli.solver.vehicle import (
     BRAKE,
     CREEP,
     FOUNDATION,
+    GRADIENT,
     RESISTANCE,
     SLOPE,
     SLOSH_DAMPING,
@@ -200,6 +201,7 @@ _LOSSES = {
     "resistance": RESISTANCE,
     "slosh_damping": SLOSH_DAMPING,
     "slope_work": SLOPE,
+    "gradient": GRADIENT,
 }
 
 

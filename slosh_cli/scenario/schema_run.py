@@ -64,6 +64,9 @@ class Track(Part):
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
     domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")
+    gradient: Annotated[float, Number(Range(-0.1, 0.1), "0.010")] = Field(
+        default=0.0, description="Rise per length of track, uphill in the direction of travel positive."
+    )
 
 
 _FRICTION: Final = Number(Range(0.005, 1.5), "0.55")

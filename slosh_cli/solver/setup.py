@@ -91,16 +91,23 @@ def _vehicle(scenario: Scenario) -> Vehicle:
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
     start = initial_point(wagon, rail, contact, scenario.braking.initial_speed)
-    resistance = scenario.wagon.running_resistance
     return new_vehicle(
         wagon,
         liquid,
         rail,
         contact,
-        Line.blank(resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic])),
+        _line(scenario),
         brake_of(scenario),
         _scales(scenario, wagon, liquid, start),
         start,
+    )
+
+
+def _line(scenario: Scenario) -> Line:
+    resistance, gradient = scenario.wagon.running_resistance, scenario.track.gradient
+    return Line.blank(
+        resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
+        pull=-STANDARD_GRAVITY * gradient if gradient else 0.0,
     )
 
 

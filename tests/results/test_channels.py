@@ -29,6 +29,7 @@ NAMED = [
     "energy_resistance",
     "energy_slosh_damping",
     "energy_slope_work",
+    "energy_gradient",
     "energy_residual",
 ]
 PER_WHEEL = [

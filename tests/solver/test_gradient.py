@@ -55,3 +55,9 @@ def test_a_free_roll_leaves_the_liquid_at_rest_up_to_the_spins_inertia(shipped, 
         assert np.ptp(liquid.start.depth) < 2.5 * left * 15.5
     assert abs(train.residual) < 2e-6
     assert vehicle.account.losses[GRADIENT] < -0.5 * PULL * mass * 8.0 * 22.0
+
+
+@pytest.mark.parametrize(("gradient", "pull"), [("0.010", -0.0981), ("-3 %", 0.2943), ("0", 0.0)])
+def test_the_scenarios_gradient_is_a_pull_against_the_travel(shipped, gradient, pull):
+    line = problem(shipped("paper_80_solid", f"track.gradient={gradient}")).vehicle.line
+    assert line.pull == pytest.approx(pull, rel=1e-12)
