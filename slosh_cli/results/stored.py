@@ -106,7 +106,10 @@ def _value(one: Answer, value: Any) -> Any:
         return tuple(value.splitlines())
     if one.kind == tuple[Check, ...]:
         return tuple(
-            Check(found["check"], found["kind"], float(found["value"]), float(found["limit"]), "")
+            Check(
+                *(found["check"], found["kind"], float(found["value"]), float(found["limit"]), ""),
+                *(found.get("standing", ""), found.get("source", "")),
+            )
             for found in json.loads(value)
         )
     return one.kind(value)

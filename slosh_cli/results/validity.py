@@ -22,7 +22,9 @@ class Check:
     """One verdict: `value` beside `limit`, and what it means where it is exceeded.
 
     `kind` is "model" where the equations themselves end, "accuracy" for the integration, "operation" for what railways
-    limit or have to deal with, "input" for a value that is probably not what was meant.
+    limit or have to deal with, "input" for a value that is probably not what was meant. `standing` says how firm the
+    limit is: of a standard for this very case ("standard"), of one for another case ("indicative"), or of nobody but
+    this tool ("assumed"); `source` is where it stands. Both are empty where the limit is no rule of railways.
     """
 
     name: str
@@ -30,6 +32,8 @@ class Check:
     value: float
     limit: float
     meaning: str
+    standing: Literal["standard", "indicative", "assumed", ""] = ""
+    source: str = ""
 
     @property
     def within(self) -> bool:
@@ -38,7 +42,8 @@ class Check:
 
     def as_dict(self) -> dict[str, object]:
         """Plain values for JSON and HDF5."""
-        return {"check": self.name, "kind": self.kind, "value": self.value, "limit": self.limit, "within": self.within}
+        verdict = {"check": self.name, "kind": self.kind, "value": self.value, "limit": self.limit}
+        return verdict | {"within": self.within, "standing": self.standing, "source": self.source}
 
 
 @dataclass(frozen=True)
@@ -91,7 +96,9 @@ def _checks(x: Extent) -> Iterator[Check]:
         x.unloading,
         UNLOADING_LIMIT,
         f"The largest wheel unloading is {x.unloading:.2f} of the static load; the usual limit is {UNLOADING_LIMIT} "
-        "(EN 14363).",
+        "(EN 14363). It is only indicative here: the standard sets it for quasi-static runs on twisted track.",
+        "indicative",
+        "EN 14363, quasi-static safety against derailment on twisted track",
     )
     yield Check("locked wheels", "operation", max(x.locked), 0.0, _locked_words(x))
 

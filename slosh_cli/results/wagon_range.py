@@ -31,20 +31,11 @@ _SHELL_MASS_PER_AREA = 7850.0 * 0.005
 
 def wagon_checks(scenario: Scenario) -> tuple[Check, ...]:
     """Verdicts on masses, lengths and track of a scenario."""
-    return (*_mass_checks(scenario), *_track_checks(scenario))
+    return (_axle_check(scenario), *_mass_checks(scenario), *_track_checks(scenario))
 
 
 def _mass_checks(scenario: Scenario) -> Iterator[Check]:
     wagon, tank = scenario.wagon, scenario.tank
-    axle = total_mass(scenario) / 4e3
-    yield Check(
-        "axle load in t",
-        "operation",
-        axle,
-        _AXLE_LOAD_LIMIT,
-        f"Overload: each axle carries {axle:.1f} t; most lines end at {_AXLE_LOAD_LIMIT} t (category D, EN 15528). "
-        "Check masses, liquid density and fill.",
-    )
     frame = wagon.bogie.mass / 1e3
     yield Check(
         "mass of a bogie frame in t",
@@ -72,6 +63,20 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
         1.0,
         f"wagon.car_body.mass of {body / 1e3:.3g} t is less than the bare shell of its tank in 5 mm of "
         f"steel, {shell / 1e3:.2g} t. It is the mass of the car body together with the empty tank.",
+    )
+
+
+def _axle_check(scenario: Scenario) -> Check:
+    axle = total_mass(scenario) / 4e3
+    return Check(
+        "axle load in t",
+        "operation",
+        axle,
+        _AXLE_LOAD_LIMIT,
+        f"Overload: each axle carries {axle:.1f} t; most lines end at {_AXLE_LOAD_LIMIT} t (category D, EN 15528). "
+        "Check masses, liquid density and fill.",
+        "standard",
+        "EN 15528, line category D",
     )
 
 

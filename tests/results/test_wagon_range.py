@@ -65,6 +65,20 @@ def test_axle_load_by_hand(shipped):
     assert axle.value == pytest.approx((21.3 + 3.6 + 5.6 + 1.84 * math.pi * 1.5**2 / 2 * 15.5) / 4, rel=1e-6)
 
 
+def test_limits_of_railways_state_source_and_standing(shipped):
+    """EN 14363 sets its 0.6 for twisted track at low speed, not for braking."""
+    told = Extent(unloading=0.7, lifts=0, pitched=False, residual=0.0, residual_cause="", locked=(0.0,) * 4)
+    verdicts = [check.as_dict() for check in (*wagon_checks(shipped("paper_80")), *checks(told))]
+    stated = {found["check"]: (found["standing"], found["source"]) for found in verdicts if found["standing"]}
+    assert {name: standing for name, (standing, _) in stated.items()} == {
+        "axle load in t": "standard",
+        "wheel unloading": "indicative",
+    }
+    assert "EN 15528" in stated["axle load in t"][1]
+    assert "twisted track" in stated["wheel unloading"][1]
+    assert any("indicative" in warning for warning in warnings_of(checks(told)))
+
+
 def test_a_finer_mesh_as_advised_is_within(shipped):
     stiff = "track.foundation.stiffness=1e9 N/m^2"
     (told,) = warnings_of(wagon_checks(shipped("paper_80_solid", stiff)))
