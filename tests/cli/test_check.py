@@ -81,3 +81,10 @@ def test_both_models_of_a_stop_recommend_the_same(slosh: Slosh) -> None:
         told(slosh, PAPER, f"tank.liquid.model={model}")["recommendation"] for model in ("modal", "shallow-water")
     ]
     assert advice[0] == advice[1]
+
+
+def test_the_data_sheet_of_a_stop(slosh: Slosh) -> None:
+    """The wagon weighs four of its axle loads; the terminal names the same figures."""
+    sheet = told(slosh, PAPER, "tank.fill=0.5")["data_sheet"]
+    assert 2 * (sheet["axle_load_front_t"] + sheet["axle_load_rear_t"]) == pytest.approx(sheet["gross_mass_t"])
+    assert f"{sheet['tau']:.3f}" in slosh("check", PAPER, *COMPUTED, "--set", "tank.fill=0.5").out
