@@ -13,6 +13,7 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse
+from slosh_cli.wagon.torque import brake_torque
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class WheelContact:
         self.gradient = shear * np.pi * a * b * steel.kalker_c11 / 4  # times N^(-1/3)
         self.adhesion = PolachParameters(p.kA, p.kS, p.mu0, p.A, p.B)
         self.resistance = scenario.wagon.running_resistance
-        self.torque, self.onset = scenario.brake_torque(0.0), scenario.braking.onset
+        self.torque, self.onset = brake_torque(scenario, 0.0), scenario.braking.onset
 
     def braking(self, time: float) -> float:
         """Torque on the wheel, N m; the stop is over before a wheel locks.
