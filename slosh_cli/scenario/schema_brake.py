@@ -36,7 +36,7 @@ def _known_speed(v: Values) -> Iterator[Finding]:
         yield Finding(("speed",), rule, f"`{shown(KM_H * v['speed'])} km/h`", "write one of them")
 
 
-class BrakedWeight(Part):
+class _BrakedWeight(Part):
     """The braked weight percentage on the wagon's sign, lambda."""
 
     rules = (_known_speed,)
@@ -72,7 +72,7 @@ class Braking(Part):
         default=None,
         description="Deceleration of the full brake without resistance and slip, m/s^2, in place of the torque.",
     )
-    braked_weight: BrakedWeight | None = Field(
+    braked_weight: _BrakedWeight | None = Field(
         default=None, description="Braked weight percentage and the speed it is told for, in place of the torque."
     )
     application: Application = Field(

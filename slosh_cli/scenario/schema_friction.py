@@ -26,7 +26,7 @@ _FRICTION_CURVE: Final = Points(
 )
 
 
-class CastIron(Part):
+class _CastIron(Part):
     """Cast-iron blocks, whose friction triples towards the stop."""
 
     law: Literal["cast-iron"] = Field(default="cast-iron", description="Friction law: cast-iron blocks, Karwatzki.")
@@ -36,7 +36,7 @@ class CastIron(Part):
         return cast_iron(speed, force)
 
 
-class Composite(Part):
+class _Composite(Part):
     """Composite blocks (K)."""
 
     law: Literal["composite"] = Field(default="composite", description="Friction law: composite blocks, Karwatzki.")
@@ -86,10 +86,10 @@ def _by_speed(points: tuple[tuple[float, float], ...]) -> FrictionTable:
     return FrictionTable.model_construct(points=points)
 
 
-FrictionLaw: TypeAlias = Annotated[
-    Annotated[CastIron | Composite | FrictionTable, Field(discriminator="law")],
+_FrictionLaw: TypeAlias = Annotated[
+    Annotated[_CastIron | _Composite | FrictionTable, Field(discriminator="law")],
     Short(
-        {"cast-iron": CastIron.model_construct(), "composite": Composite.model_construct()},
+        {"cast-iron": _CastIron.model_construct(), "composite": _Composite.model_construct()},
         _NumberOrTable(),
         _by_speed,
         "a coefficient of friction from 0.005 to 1.5, a list of points [speed, coefficient]",
@@ -105,7 +105,7 @@ class Blocks(Part):
     force: Annotated[float, Quantity("force", Range(1.0, 5e5), "25 kN")] = Field(
         description="Force of one block at full application, N."
     )
-    friction: FrictionLaw = Field(
+    friction: _FrictionLaw = Field(
         description="`cast-iron`, `composite`, a coefficient (LL block 0.15, K block 0.27), or points [speed, value]."
     )
 
@@ -126,7 +126,7 @@ class Discs(Part):
     radius: Annotated[float, Quantity("length", Range(0.02, 1.0), "0.247 m")] = Field(
         description="Mean radius of friction, m."
     )
-    friction: FrictionLaw = Field(
+    friction: _FrictionLaw = Field(
         description="A coefficient (pads 0.35), `cast-iron`, `composite`, or points [speed of the tread, value]."
     )
 
