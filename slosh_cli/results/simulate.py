@@ -11,6 +11,7 @@ from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.method import START
 from slosh_cli.results.answers import PerWheel
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.line import check_covered, line_channels
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
@@ -39,6 +40,7 @@ from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.section import section_of
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
+from slosh_cli.track.spectrum import realised_level
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION
 
 _WHOLE = 1 / HALF
@@ -87,6 +89,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     run = integrate(stop, progress, cancel)
     vehicle, time = stop.vehicle, stop.train.time
     end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
+    check_covered(scenario, float(end.q[POSITION]))
     status, reason = _ending(run, braked)
     stopped, tank, weight = status is Status.STOPPED, scenario.tank, stop.weight
     advice = _recommended(scenario)
@@ -110,6 +113,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         mean_total_wheel_load_N=_WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
         weight_N=_WHOLE * weight,
         locked_time_s=_per_wheel(account.locked_time),
+        unevenness_d1_m=realised_level(scenario.track.unevenness, float(end.q[POSITION])),
         energy_residual=stop.train.largest_residual,
         energy=_final_energy(stop),
         steps=stop.train.steps,
@@ -235,6 +239,7 @@ def _channels(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str, V
         channels |= _cell_channels(scenario, recorded, acceleration)
     else:
         channels |= _load_channels(scenario, vehicle, recorded, place, acceleration)
+    channels |= line_channels(scenario, vehicle, place[:, POSITION])
     return channels | _energy_channels(rows, columns)
 
 

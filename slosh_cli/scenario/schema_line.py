@@ -171,6 +171,9 @@ def _judge(table: Table) -> None:
         fix = "measure it at more places" if len(table.lines) < 4 else "leave out rows, or what the stop does not need"
         table.refuse(None, "", f"must have from 4 to {_MOST_POINTS} rows", f"{len(table.lines)}", fix)
         return
+    if table.columns["x_m"][0] > 0.0:
+        given, fix = f"{shown(table.columns['x_m'][0])}", "begin where the middle of the first vehicle stands, at 0"
+        table.refuse(table.lines[0], "x_m", "must begin at 0 or before", given, fix)
     before = -math.inf
     for line, x, z in zip(table.lines, *(table.columns[name] for name in _HEAD), strict=True):
         if x - before < 0.01:

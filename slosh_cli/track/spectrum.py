@@ -92,3 +92,15 @@ def realised_level(unevenness: Unevenness | None, way: float | None = None) -> f
     for k in range(number.size):
         total += amplitude[k] * np.cos(number[k] * places + phase[k])
     return float(np.sqrt(np.mean(total**2)))
+
+
+def level_words(unevenness: Unevenness | None) -> str:
+    """What a spectrum realises in D1, with its convention; empty where the rail has no spectrum."""
+    level = realised_level(unevenness)
+    if unevenness is None or level is None:
+        return ""
+    name = unevenness.spectrum or unevenness.shape
+    form = "FRA vertical profile 0.25 A_v w_c^2/((Omega^2 + w_c^2) Omega^2)"
+    form = form if name.startswith("fra") else "ERRI B176 A w_c^2/((Omega^2 + w_r^2)(Omega^2 + w_c^2))"
+    found = f"level of the rails in D1 (3-25 m), realised over whole repeats: {1e3 * level:.2f} mm"
+    return f"{found} ({name}: {form}, one-sided, per rad/m)"

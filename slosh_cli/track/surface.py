@@ -117,6 +117,12 @@ class RollingSurface(Block):
         fine = max(_FLAT_STEP, extent / (_FLAT_STEPS * spin))
         return fine if turned < _RINGING * extent else fine + (2.0 * math.pi - turned) / spin
 
+    def levels(self, places: Vector) -> Vector:
+        """Heights (n,) m of the unloaded rail under the leading wheel of a vehicle at the `places` (n,) m."""
+        heights = np.zeros(places.size)
+        self.trace(0, np.ascontiguousarray(places, dtype=np.float64), heights)
+        return heights
+
     @kernel
     def trace(self, wheel, places, heights):
         """Heights (n,) m of the unloaded rail under a wheel of a vehicle at the `places` (n,) m, into `heights`."""
