@@ -83,7 +83,7 @@ _ENERGY = (
     Channel("energy_foundation", "J", "energy taken by the track foundation so far"),
     Channel("energy_resistance", "J", "energy taken by the running resistance so far"),
     Channel("energy_slosh_damping", "J", "energy taken by slosh damping so far"),
-    Channel("energy_slope_work", "J", "work done by the wheels' own dip in the rail so far"),
+    Channel("energy_slope_work", "J", "work of the rail's slope under the wheels, and of flats, so far"),
     Channel("energy_gradient", "J", "work done against gravity on the gradient so far"),
     Channel("energy_residual", "1", "residual of the energy ledger over the initial kinetic energy"),
 )
@@ -111,6 +111,19 @@ _OF_SOME_BRAKES = {
     for quantity, unit, meaning in _OPTIONAL
     for i in WHEELS
 }
+LINE_CHANNELS: Mapping[str, Channel] = MappingProxyType(
+    {
+        one.name: one
+        for one in (
+            Channel("line_gradient", "1", "gradient where the wagon is, uphill positive; not on a level line"),
+            Channel(
+                "line_height", "m", "height of the line where the wagon is, zero at the start; not on a level line"
+            ),
+            Channel("rail_level", "m", "height of the unloaded rail under wheel 1; not on even rails"),
+        )
+    }
+)
+"""Channels of runs whose line is not level or not even."""
 _SLOSH_AMPLITUDE = re.compile(r"slosh_([1-9][0-9]*)_amplitude")
 
 
@@ -119,10 +132,9 @@ def channel(name: str) -> Channel:
 
     Raises KeyError when no channel has that name.
     """
-    if name in CHANNELS:
-        return CHANNELS[name]
-    if name in _OF_SOME_BRAKES:
-        return _OF_SOME_BRAKES[name]
+    known = CHANNELS.get(name) or LINE_CHANNELS.get(name) or _OF_SOME_BRAKES.get(name)
+    if known is not None:
+        return known
     match = _SLOSH_AMPLITUDE.fullmatch(name)
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")

@@ -6,6 +6,7 @@ import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.line import line_channels
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver.record import Columns, columns_of
@@ -76,6 +77,7 @@ def channels_of(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str,
         channels |= _cell_channels(scenario, recorded, acceleration)
     else:
         channels |= _load_channels(scenario, vehicle, recorded, place, acceleration)
+    channels |= line_channels(scenario, vehicle, place[:, POSITION])
     return channels | _energy_channels(rows, columns)
 
 

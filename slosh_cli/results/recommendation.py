@@ -139,7 +139,10 @@ def shallow_error(excess: float) -> float:
 
 
 def stop_deceleration(scenario: Scenario) -> float:
-    """Deceleration (m/s^2) of the wagon as a rigid point mass at its initial speed: by torque, at most by adhesion."""
+    """Deceleration (m/s^2) of the wagon as a rigid point mass at its initial speed: by torque, at most by adhesion.
+
+    It is what a load feels: gravity's pull on a gradient is left out, which pulls the load along (theory section 14).
+    """
     wagon, brake = scenario.wagon, scenario.braking
     resistance = wagon.running_resistance
     speed, radius = brake.initial_speed, wagon.wheelset.wheel_radius

@@ -11,7 +11,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
-from slosh_cli.results.channels import TIME, channel, wheel
+from slosh_cli.results.channels import LINE_CHANNELS, TIME, channel, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
 from slosh_cli.wagon.torque import nominal_torque
@@ -139,6 +139,10 @@ class Record(Answers):
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
         line=Told(8, "mean sum of wheel loads / weight - 1", ".1e"))
     weight_N: float = computed("N", "weight of wagon and load", shown=~Shown.JSON)
+    unevenness_d1_m: float | None = computed(
+        "m", "standard deviation in D1 (3-25 m) that a spectrum of the rails realises over the way; else none",
+        shown=Shown.JSON | Shown.HISTORY, default_factory=lambda: None, optional=True,
+        line=Told(12, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
     energy_residual: float = computed(
         "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
         line=Told(9, "energy ledger, largest residual", ".1e", "of the initial energy"))
@@ -165,6 +169,10 @@ class Record(Answers):
     def has_liquid(self) -> bool:
         """Whether the load can slosh."""
         return self.liquid_model != "rigid"
+
+    def has_figure(self, name: str) -> bool:
+        """Whether there is what the figure `name` shows: a liquid, a line that is not level or not even."""
+        return {"slosh": self.has_liquid, "line": not LINE_CHANNELS.keys().isdisjoint(self.channels)}.get(name, True)
 
     def locked_stretches(self, i: int) -> list[tuple[float, float]]:
         """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
-from slosh_cli.arrays import Integers, Vector
+from slosh_cli.arrays import Vector
 from slosh_cli.method import START
 from slosh_cli.results.answers import PerWheel
 from slosh_cli.results.histories import LOSS_PLACES, WHOLE, channels_of
+from slosh_cli.results.line import check_covered
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
@@ -21,8 +22,10 @@ from slosh_cli.scenario import Scenario
 from slosh_cli.solver import advance
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import ReadyStop, problem
+from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.section import section_of
+from slosh_cli.track.spectrum import realised_level
 from slosh_cli.wagon.model import POSITION
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
@@ -67,6 +70,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     run = integrate(stop, progress, cancel)
     vehicle, time = stop.vehicle, stop.train.time
     end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
+    check_covered(scenario, float(end.q[POSITION]))
     status, reason = _ending(run, braked)
     stopped, tank, weight = status is Status.STOPPED, scenario.tank, stop.weight
     advice = _recommended(scenario)
@@ -84,15 +88,11 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         braking_time_s=time - account.onset_time if stopped else None,
         max_surface_m=account.surface,
         surface_limit_m=section_of(tank).height * (1 - tank.fill),
-        min_wheel_load_N=_per_wheel(account.least) if braked else static_loads,
-        max_wheel_load_N=_per_wheel(account.largest) if braked else static_loads,
         static_wheel_load_N=static_loads,
         mean_total_wheel_load_N=WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
         weight_N=WHOLE * weight,
-        locked_time_s=_per_wheel(account.locked_time),
-        brake_torque_max_N_m=_per_wheel(account.largest_torque),
-        slide_protection_cycles=_protected(scenario, vehicle.brake.vents),
-        slide_protection_air=_protected(scenario, vehicle.brake.air),
+        **_of_wheels(scenario, vehicle, static_loads),
+        unevenness_d1_m=realised_level(scenario.track.unevenness, float(end.q[POSITION])),
         energy_residual=stop.train.largest_residual,
         energy=_final_energy(stop),
         steps=stop.train.steps,
@@ -125,9 +125,18 @@ def _per_wheel(values: Vector) -> PerWheel:
     return cast(PerWheel, tuple(float(value) for value in values))
 
 
-def _protected(scenario: Scenario, counts: Vector | Integers) -> float | None:
-    """Sum over the wheelsets of what slide protection counted; None without it."""
-    return float(counts.sum()) if scenario.braking.slide_protection else None
+def _of_wheels(scenario: Scenario, vehicle: Vehicle, static_loads: PerWheel) -> dict[str, Any]:
+    """Extremes of the wheels since the onset; what slide protection counted, summed over the wheelsets."""
+    account, brake, braked = vehicle.account, vehicle.brake, vehicle.brake.breaks > 0
+    protected = scenario.braking.slide_protection is not None
+    return {
+        "min_wheel_load_N": _per_wheel(account.least) if braked else static_loads,
+        "max_wheel_load_N": _per_wheel(account.largest) if braked else static_loads,
+        "locked_time_s": _per_wheel(account.locked_time),
+        "brake_torque_max_N_m": _per_wheel(account.largest_torque),
+        "slide_protection_cycles": float(brake.vents.sum()) if protected else None,
+        "slide_protection_air": float(brake.air.sum()) if protected else None,
+    }
 
 
 def _recommended(scenario: Scenario) -> Recommendation | None:

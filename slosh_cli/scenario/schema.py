@@ -15,6 +15,7 @@ from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
 from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
+from slosh_cli.scenario.tree import value_at
 from slosh_cli.scenario.yaml_text import parse
 
 
@@ -54,7 +55,7 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     `overrides` are texts ``key.path=VALUE`` with VALUE in YAML; all are applied, in order, before anything
     is checked. Raises ScenarioError, which lists every mistake of the file and of the overrides.
     """
-    document = read(path, overrides, _kind)
+    document = _with_files_beside(read(path, overrides, _kind), Path(path))
     if _kind(document.data) is TankScenario:
         rule = f"must describe a stop, with {', '.join(_stop_parts())} beside the tank"
         fix = "add them, or use the file where a tank alone will do"
@@ -76,8 +77,17 @@ def load_tank_scenario(path: str | Path, overrides: Iterable[str] = ()) -> TankS
 
 def load_any_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario | TankScenario:
     """Read a file of either kind: one with any of the wagon's parts is taken for a stop."""
-    document = read(path, overrides, _kind)
+    document = _with_files_beside(read(path, overrides, _kind), Path(path))
     return _kind(document.data).of(document, str(path))
+
+
+def _with_files_beside(document: Document, path: Path) -> Document:
+    """The document with files that it names found from its own folder, those of overrides from where one is."""
+    place = ("track", "unevenness", "file")
+    name = value_at(document.data, place)
+    if isinstance(name, str) and not name.startswith("x_m,z_m ") and not document.origin(place).override:
+        document.data["track"]["unevenness"]["file"] = str(path.parent / name)
+    return document
 
 
 def parse_scenario(text: str, name: str = "scenario") -> Scenario:

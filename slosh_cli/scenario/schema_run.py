@@ -8,6 +8,7 @@ from pydantic import Field
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Number, Quantity, Range
 from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.schema_line import GradientProfile, Unevenness
 from slosh_cli.scenario.short import Short
 from slosh_cli.scenario.units import at_most, shown
 
@@ -64,9 +65,19 @@ class Track(Part):
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
     domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")
-    gradient: Annotated[float, Number(Range(-0.1, 0.1), "0.010")] = Field(
-        default=0.0, description="Rise per length of track, uphill in the direction of travel positive."
+    gradient: Annotated[float | tuple[tuple[float, float], ...], GradientProfile()] = Field(
+        default=0.0,
+        description="Rise per length of track, uphill in the direction of travel positive; or points [position, "
+        "gradient], linear between them and constant beyond.",
     )
+    unevenness: Unevenness | None = Field(
+        default=None, description="How the unloaded rail deviates from a straight line. Default: not at all."
+    )
+
+    @property
+    def gradient_points(self) -> tuple[tuple[float, float], ...]:
+        """Positions (m) and gradients, linear between them and constant beyond."""
+        return ((0.0, self.gradient),) if isinstance(self.gradient, float) else self.gradient
 
 
 _FRICTION: Final = Number(Range(0.005, 1.5), "0.55")

@@ -109,6 +109,20 @@ def _pass_breaks(train):
 
 
 @inner_kernel
+def _resolving_step(vehicle):
+    """Longest step (s) from the start that resolves what the vehicle rolls over: its line, its rails, its flats."""
+    wagon, q, v, surface = vehicle.wagon, vehicle.points[START].q, vehicle.points[START].v, vehicle.contact.surface
+    way = vehicle.line.way_ahead(q[0])
+    if surface.uneven == 0:
+        return way / abs(v[0])
+    step = math.inf
+    for i in range(wagon.wheels):
+        way = min(way, surface.way_ahead(i, q[0]))
+        step = min(step, surface.turning_step(i, q[wagon.first_spin + i], v[wagon.first_spin + i]))
+    return min(step, way / abs(v[0]))
+
+
+@inner_kernel
 def _limited_step(train):
     """The step to try, not past a break or the time limit; and whether it ends at the break."""
     control, vehicles = train.control, train.vehicles
@@ -117,6 +131,8 @@ def _limited_step(train):
         slowing = max(slowing, abs(vehicles[k].points[START].a[0]))
     if slowing * step > control.most_slowing:
         step = control.most_slowing / slowing
+    for k in range(len(vehicles)):
+        step = min(step, _resolving_step(vehicles[k]))
     until = min(_next_break(train), control.time_limit) - train.time
     if step >= until * (1.0 - 1e-9):
         return until
