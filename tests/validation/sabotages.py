@@ -145,7 +145,7 @@ SABOTAGES: dict[str, Sabotage] = {
         "distance",
     ),
     "point_mass_resistance": edit(
-        "point-mass", "solver.setup", "_vehicle", "resistance=HALF *", "resistance=1.0 *", "distance"
+        "point-mass", "solver.setup", "_line", "resistance=HALF *", "resistance=1.0 *", "distance"
     ),
     "momentum_reaction": edit(
         "momentum",

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from slosh_cli.validation.exact import exudyn_bodies
 from slosh_cli.validation.exact.fixed_rail import element_matrices, fixed_rail, roll
 from slosh_cli.validation.exact.quadrature import integral
 from slosh_cli.validation.exact.steady_rail import Beam, closed_form, fourier_integral
+from slosh_cli.wagon.brake import CAST_IRON, Application
 
 PAPER = Beam(bending=6.12e6, mass=60.0, stiffness=1e7, shear=666875.0)
 
@@ -48,3 +50,26 @@ def test_integral_of_a_jump():
     values = np.where(time < 0.5, time, 3.0 - time)
     assert integral(time, values, 0.5) == pytest.approx(0.125 + 4.5 - 1.875, rel=1e-12)
     assert np.trapezoid(values, time) != pytest.approx(0.125 + 4.5 - 1.875, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "brake",
+    [
+        Application.linear(4.0).brake(5e3, 0.5),
+        Application.filling(4.0).brake(5e3, 0.5),
+        Application.step().reduced(0.58).brake(5e3, 0.5),
+        Application.step().brake(5e3, 0.5).replaced(law=CAST_IRON),
+        Application.step().brake(5e3, 0.5).replaced(speeds=np.array([0.0, 60.0]), frictions=np.array([0.4, 0.3])),
+    ],
+    ids=["linear", "filling", "reduced", "cast iron", "table"],
+)
+def test_the_second_code_refuses_brakes_that_it_does_not_know(shipped, monkeypatch, brake):
+    monkeypatch.setattr(exudyn_bodies, "brake_of", lambda _: brake)
+    with pytest.raises(ValueError, match="constant torque applied at once"):
+        exudyn_bodies.WheelContact(shipped("paper_80"))
+
+
+def test_the_second_code_refuses_a_gradient_and_takes_the_wagon_of_the_paper(shipped):
+    exudyn_bodies.WheelContact(shipped("paper_80"))
+    with pytest.raises(ValueError, match=r"gradient must be 0, but is 0\.01"):
+        exudyn_bodies.WheelContact(shipped("paper_80", "track.gradient=0.01"))

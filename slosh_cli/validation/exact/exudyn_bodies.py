@@ -13,6 +13,7 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse
+from slosh_cli.wagon.brake import CONSTANT, brake_of
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,13 @@ class Bodies:
 
 
 class WheelContact:
-    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation)."""
+    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation).
+
+    Raises ValueError for a brake that builds up or fades and for a gradient: the second code would leave them out.
+    """
 
     def __init__(self, scenario: Scenario) -> None:
+        _refuse_what_is_left_out(scenario)
         steel, p = scenario.contact, scenario.contact.adhesion
         self.radius = scenario.wagon.wheelset.wheel_radius
         a, b, approach = ellipse(self.radius, steel.rail_crown_radius, steel.youngs_modulus, steel.poisson_ratio, 1.0)
@@ -85,6 +90,15 @@ class WheelContact:
         terms = self.resistance
         rolling = (terms.constant + terms.linear * rate[0] + terms.quadratic * rate[0] ** 2) / 8
         return np.array([-creep - rolling, normal, self.braking(time) - creep * self.radius])
+
+
+def _refuse_what_is_left_out(scenario: Scenario) -> None:
+    brake: Any = brake_of(scenario)
+    at_once = len(brake.starts) == 1 and brake.base[0] == 1.0 and brake.slope[0] == brake.amplitude[0] == 0.0
+    if not at_once or brake.law != CONSTANT or len(brake.frictions) > 1:
+        raise ValueError("the brake must be a constant torque applied at once: the second code knows no other")
+    if scenario.track.gradient:
+        raise ValueError(f"the gradient must be 0, but is {scenario.track.gradient}: the second code knows no gradient")
 
 
 def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[float, float, float]:

@@ -7,12 +7,12 @@ from math import inf, sqrt
 
 import numpy as np
 
-Friction = Callable[[float, float], float]
-"""Coefficient of friction at a tread's speed (km/h) under a force (kN)."""
 
+def friction_law(law: str | float | Sequence[Sequence[float]]) -> Callable[[float, float], float]:
+    """Coefficient of friction at a tread's speed (km/h) under a force (kN).
 
-def friction(law: str | float | Sequence[Sequence[float]]) -> Friction:
-    """A law by name (`cast-iron` after Karwatzki, `composite`), a constant, or rows of speed (km/h) and coefficient."""
+    `law` is a name (`cast-iron` after Karwatzki, `composite`), a constant, or rows of speed (km/h) and coefficient.
+    """
     if law == "cast-iron":
         return lambda v, F: 0.6 * (1.62 * F + 100) / (8.1 * F + 100) * (v + 100) / (5 * v + 100)
     if law == "composite":
