@@ -14,6 +14,8 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
+from slosh_cli.validation.exact.friction import friction_law
+
 GRAVITY = 9.81
 # s; car w, theta; bogies w, theta; four wheels' w; their rotations
 CAR, BOGIES, WHEELS, SPINS = (1, 2), ((3, 4), (5, 6)), slice(7, 11), slice(11, 15)
@@ -21,32 +23,15 @@ SIZE = 15
 FRAME = np.array([4, 4, 6, 6])  # pitch of the bogie above each wheel
 
 
-def cast_iron(speed, force):
-    """Friction coefficient after Karwatzki at a tread's speed (m/s) under a block's force (N)."""
-    v, F = 3.6 * speed, force / 1e3
-    return 0.6 * (1.62 * F + 100) / (8.1 * F + 100) * (v + 100) / (5 * v + 100)
+def pressed(count: int, force: float, arm: float, law) -> Callable:
+    """Torques (N m) at treads' speeds (m/s) and an application: blocks at the wheel's radius, or discs at their own.
 
-
-def composite(speed, force):
-    """Friction coefficient of a K block, as `cast_iron`."""
-    v, F = 3.6 * speed, force / 1e3
-    return 0.44 * (0.1 * F + 20) / (0.4 * F + 20) * (v + 150) / (2 * v + 150)
-
-
-def tabulated(*points):
-    """A law from (km/h, coefficient)."""
-    speeds, values = np.transpose(points)
-    return lambda speed, force: np.interp(3.6 * speed, speeds, values) + 0.0 * force
-
-
-def pressed(count: int, force: float, radius: float, friction) -> Callable:
-    """Torque (N m) at a tread's speed and an application: blocks at the wheel's radius, or discs at their own."""
-    return lambda speed, share: count * friction(speed, share * force) * share * force * radius
-
-
-def at_once(_):
-    """The application of the paper."""
-    return 1.0
+    `force` in kN; `law` as in `friction_law`.
+    """
+    mu = friction_law(law)
+    return lambda speeds, share: np.array(
+        [1e3 * count * mu(3.6 * v, share * force) * share * force * arm for v in speeds]
+    )
 
 
 def ramp(time: float) -> Callable:
@@ -55,9 +40,9 @@ def ramp(time: float) -> Callable:
 
 
 def filling(time_95: float, delay: float = 0.0, jump: float = 0.10) -> Callable:
-    """0.95 after `time_95` s, from `jump` after `delay` s on."""
+    """0.95 after `time_95` s, from `jump` after `delay` s on; at the jump itself what was before it."""
     rate = np.log((1 - jump) / 0.05) / (time_95 - delay)
-    return lambda since: 0.0 if since < delay else 1 - (1 - jump) * np.exp(-rate * (since - delay))
+    return lambda since: 0.0 if since <= delay else 1 - (1 - jump) * np.exp(-rate * (since - delay))
 
 
 @dataclass(frozen=True)
@@ -65,7 +50,7 @@ class Brake:
     """`torque(speeds, share)` (N m) of a wheel, `application(time since the onset)`, and where the latter has kinks."""
 
     torque: Callable
-    application: Callable = at_once
+    application: Callable = lambda _: 1.0
     kinks: tuple[float, ...] = ()
 
 
