@@ -55,7 +55,16 @@ _WHEEL = (
     ("tangential_force", "N", "tangential contact force of wheel {i}, positive when it brakes"),
     ("brake_torque", "N m", "brake torque transmitted to wheel {i}"),
     ("rail_deflection", "m", "rail displacement under wheel {i}, positive up"),
+    ("held_torque", "N m", "torque that the brake of wheel {i} can hold"),
 )
+
+_BRAKE = Channel("brake_application", "1", "part of the full brake force that presses, without slide protection")
+
+_OPTIONAL = (
+    ("friction", "1", "friction coefficient of the brake of wheel {i}"),
+    ("slide_protection_share", "1", "part of the brake force that slide protection leaves to wheel {i}"),
+)
+"""Of wheels with a brake that has it."""
 
 _LIQUID = (
     Channel("liquid_force", "N", "longitudinal force of the liquid on the tank, positive forward"),
@@ -89,13 +98,19 @@ def _fixed_channels() -> tuple[Channel, ...]:
     wheels = (
         Channel(wheel(i, quantity), unit, meaning.format(i=i)) for i in WHEELS for quantity, unit, meaning in _WHEEL
     )
-    return (*_WAGON, *bogies, *wheels, *_LIQUID, *_ENERGY)
+    return (*_WAGON, *bogies, *wheels, _BRAKE, *_LIQUID, *_ENERGY)
 
 
 TIME = Channel("time", "s", "time since the start of the run")
 CHANNELS: Mapping[str, Channel] = MappingProxyType({channel.name: channel for channel in _fixed_channels()})
-"""Every channel that each run has, in file order; slosh amplitudes come on top, one per mode."""
+"""Every channel that each run has, in file order. On top come slosh amplitudes, one per mode, and what only some brakes
+have."""
 
+_OF_SOME_BRAKES = {
+    wheel(i, quantity): Channel(wheel(i, quantity), unit, meaning.format(i=i))
+    for quantity, unit, meaning in _OPTIONAL
+    for i in WHEELS
+}
 _SLOSH_AMPLITUDE = re.compile(r"slosh_([1-9][0-9]*)_amplitude")
 
 
@@ -106,6 +121,8 @@ def channel(name: str) -> Channel:
     """
     if name in CHANNELS:
         return CHANNELS[name]
+    if name in _OF_SOME_BRAKES:
+        return _OF_SOME_BRAKES[name]
     match = _SLOSH_AMPLITUDE.fullmatch(name)
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")

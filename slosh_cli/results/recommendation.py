@@ -15,8 +15,8 @@ from typing import Literal
 from slosh_cli.results.liquid_range import FREQUENCY_LIMIT, room_and_depth
 from slosh_cli.scenario import Scenario, Tank, TankScenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
-from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.still import frequency_excess
+from slosh_cli.wagon.torque import brake_torque, moved_mass, total_mass
 
 _MovingLiquid = Literal["modal", "shallow-water"]
 
@@ -145,18 +145,10 @@ def stop_deceleration(scenario: Scenario) -> float:
     speed, radius = brake.initial_speed, wagon.wheelset.wheel_radius
     drag = resistance.constant + resistance.linear * speed + resistance.quadratic * speed**2
     mass = total_mass(scenario)
-    rolling = (8.0 * scenario.brake_torque(speed) / radius + drag) / (
-        mass + 4.0 * wagon.wheelset.spin_inertia / radius**2
-    )
+    rolling = (8.0 * brake_torque(scenario, speed) / radius + drag) / moved_mass(scenario)
     return min(rolling, scenario.contact.adhesion.mu0 * STANDARD_GRAVITY + drag / mass)
 
 
 def deceleration_of(scenario: Scenario | TankScenario) -> float | None:
     """The same of any scenario; None for a tank alone, which nothing decelerates."""
     return stop_deceleration(scenario) if isinstance(scenario, Scenario) else None
-
-
-def total_mass(scenario: Scenario) -> float:
-    """Mass of the whole wagon with its load, kg."""
-    wagon = scenario.wagon
-    return wagon.car_body.mass + 2.0 * wagon.bogie.mass + 4.0 * wagon.wheelset.mass + frozen_load(scenario.tank).mass

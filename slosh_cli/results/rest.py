@@ -7,8 +7,6 @@ largest force of that liquid stays below what they can bear.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from slosh_cli.arrays import Vector
@@ -22,10 +20,8 @@ from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.shallow import WORK_ROWS
+from slosh_cli.wagon.brake import holding_torque
 from slosh_cli.wagon.model import CAR_PITCH
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _PERIODS = 4.0
 """Periods of the first mode that the modes are looked at for."""
@@ -44,7 +40,9 @@ def rest_checks(scenario: Scenario, stop: ReadyStop) -> tuple[Check, ...]:
     """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
     if type(stop.vehicle.liquid) is Slosh or scenario.braking.stop_speed > _REST_SPEED:
         return ()
-    (on, back), held = largest_pushes(stop.vehicle), holding_force(scenario, stop.static_loads)
+    vehicle, wheels = stop.vehicle, range(stop.vehicle.wagon.wheels)
+    torques = np.array([holding_torque(vehicle.brake, wheel, stop.train.time) for wheel in wheels])
+    (on, back), held = largest_pushes(vehicle), holding_force(scenario, stop.static_loads, torques)
     push, way = max(on, back), "on" if on > held else "back"
     return (
         Check(
@@ -59,13 +57,13 @@ def rest_checks(scenario: Scenario, stop: ReadyStop) -> tuple[Check, ...]:
     )
 
 
-def holding_force(scenario: Scenario, static_loads: Sequence[float] | Vector) -> float:
+def holding_force(scenario: Scenario, static_loads: Vector, torques: Vector) -> float:
     """Largest force (N) along the track that a standing wagon bears: eight braked wheels and running resistance.
 
-    `static_loads` (4,) N are those of the wheels on one rail.
+    Of the wheels on one rail: `static_loads` (4,) N and the `torques` (4,) N m that their brakes can hold.
     """
-    brake, wagon = scenario.brake_torque(0.0) / scenario.wagon.wheelset.wheel_radius, scenario.wagon
-    wheels = np.minimum(brake, scenario.contact.adhesion.mu0 * np.asarray(static_loads, dtype=np.float64))
+    wagon = scenario.wagon
+    wheels = np.minimum(torques / wagon.wheelset.wheel_radius, scenario.contact.adhesion.mu0 * static_loads)
     return float(wheels.sum() / HALF + wagon.running_resistance.constant)
 
 

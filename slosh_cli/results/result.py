@@ -14,6 +14,7 @@ from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, com
 from slosh_cli.results.channels import TIME, channel, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
+from slosh_cli.wagon.torque import nominal_torque
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,7 +96,7 @@ class Record(Answers):
         column="v0_km_h", per=1 / 3.6)
     torque_N_m: float = derived(
         "N m", "brake torque per wheel, fully applied, at the initial speed", Place.CONDITIONS,
-        given="nominal_torque", needed=True, column="torque_kN_m", per=1e3)
+        of=lambda run: nominal_torque(run.scenario), needed=True, column="torque_kN_m", per=1e3)
     onset_s: float = derived(
         "s", "time at which the brake sets in", Place.CONDITIONS, given="braking.onset", needed=True,
         shown=Shown.HISTORY)
@@ -127,6 +128,13 @@ class Record(Answers):
         line=Told(7, "wheel unloading, largest", ".1f", "% (usual limit: 60 %)", per=0.01))
     locked_time_s: PerWheel = computed(
         "s", "how long a wheel was locked", Place.WHEELS, line=Told(5, "locked / s", ".2f"))
+    brake_torque_max_N_m: PerWheel = computed(
+        "N m", "largest brake torque transmitted to a wheel", shown=~(Shown.SUMMARY | Shown.STUDY))
+    slide_protection_cycles: float | None = computed(
+        "1", "how often slide protection began to vent, all wheelsets; none without it", shown=~Shown.STUDY)
+    slide_protection_air: float | None = computed(
+        "1", "air that slide protection used: fillings of one wheelset's brake, all wheelsets; none without it",
+        shown=~Shown.STUDY)
     mean_total_wheel_load_N: float = computed(
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
         line=Told(8, "mean sum of wheel loads / weight - 1", ".1e"))

@@ -11,10 +11,10 @@ from slosh_cli.scenario.schema import (
     load_tank_scenario,
     parse_scenario,
 )
+from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_modes import OutlivedCoefficientsError
 from slosh_cli.scenario.schema_run import (
     Adhesion,
-    Braking,
     Contact,
     Domain,
     Foundation,

@@ -9,9 +9,10 @@ from pydantic import Field
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.loader import Root, read
 from slosh_cli.scenario.rules import Finding
+from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_modes import with_own_coefficients
 from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
-from slosh_cli.scenario.schema_run import Braking, Contact, Output, Solver, Track
+from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
 from slosh_cli.scenario.yaml_text import parse
@@ -41,15 +42,6 @@ class Scenario(Root):
     braking: Braking = Field(description="The stop: speed, torque and when.")
     solver: Solver = Field(default=Solver.model_construct(), description="Accuracy and patience.")
     output: Output = Field(default=Output.model_construct(), description="What is written.")
-
-    def brake_torque(self, speed: float) -> float:
-        """Torque (N m) of a fully applied wheel that rolls at `speed` (m/s)."""
-        return self.braking.torque_at(speed, self.wagon.wheelset.wheel_radius)
-
-    @property
-    def nominal_torque(self) -> float:
-        """Torque (N m) of a fully applied wheel at the initial speed."""
-        return self.brake_torque(self.braking.initial_speed)
 
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)

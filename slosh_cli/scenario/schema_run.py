@@ -1,4 +1,4 @@
-"""Track, contact, braking, solver and output: everything of a stop that is neither wagon nor tank."""
+"""Track, contact, solver and output of a stop."""
 
 from collections.abc import Iterator
 from typing import Annotated, Final
@@ -140,27 +140,6 @@ class Contact(Part):
         default=None,
         description="Hertzian contact stiffness of one wheel, N/m^1.5, instead of the computed one.",
     )
-
-
-class Braking(Part):
-    """The stop."""
-
-    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
-        description="Speed at the start of the run, m/s."
-    )
-    torque: Annotated[float, Quantity("torque", Range(0.0, 1e6), "5 kN m")] = Field(
-        description="Brake torque per wheel, N m (a wheelset has two wheels)."
-    )
-    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
-        description="When the brakes set in, after the start of the run, s."
-    )
-    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
-        default=0.02, description="The wagon counts as stopped when its speed falls to this, m/s."
-    )
-
-    def torque_at(self, speed: float, wheel_radius: float) -> float:  # noqa: ARG002 - other brakes depend on them
-        """Torque (N m) of a fully applied wheel of `wheel_radius` (m) that rolls at `speed` (m/s)."""
-        return self.torque
 
 
 class Solver(Part):

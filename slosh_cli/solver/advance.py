@@ -90,8 +90,11 @@ def _next_break(train):
 
 @inner_kernel
 def _pass_breaks(train):
-    """Pass the breaks of the brakes' torques that are due; the first of a brake is its onset."""
-    vehicles = train.vehicles
+    """Pass the breaks of the brakes' torques that are due; the first of a brake is its onset.
+
+    Returns whether a torque has a kink or a jump there.
+    """
+    vehicles, kinks = train.vehicles, False
     for k in range(len(vehicles)):
         vehicle, brake = vehicles[k], vehicles[k].brake
         if train.time < brake.next_break():
@@ -99,8 +102,10 @@ def _pass_breaks(train):
         if not brake.is_on():
             vehicle.account.onset_time = train.time
             vehicle.account.onset_position = vehicle.points[START].q[0]
-        brake.pass_break()
-        let_go(vehicle, train.time)
+        if brake.pass_break(train.time, vehicle.points[START].v, vehicle.wagon.first_spin):
+            let_go(vehicle, train.time)
+            kinks = True
+    return kinks
 
 
 @inner_kernel
@@ -231,8 +236,8 @@ def _choose(train, rows):
     if train.time >= train.control.time_limit:
         return TIME_LIMIT
     if train.time >= _next_break(train):
-        _pass_breaks(train)
-        _note_event(train)
+        if _pass_breaks(train):
+            _note_event(train)
         return RUNNING
     step = _limited_step(train)
     if not _has_room(train, rows, step):

@@ -7,7 +7,6 @@ from slosh_cli.validation.exact import exudyn_bodies
 from slosh_cli.validation.exact.fixed_rail import element_matrices, fixed_rail, roll
 from slosh_cli.validation.exact.quadrature import integral
 from slosh_cli.validation.exact.steady_rail import Beam, closed_form, fourier_integral
-from slosh_cli.wagon.brake import CAST_IRON, Application
 
 PAPER = Beam(bending=6.12e6, mass=60.0, stiffness=1e7, shear=666875.0)
 
@@ -53,20 +52,18 @@ def test_integral_of_a_jump():
 
 
 @pytest.mark.parametrize(
-    "brake",
+    "keys",
     [
-        Application.linear(4.0).brake(5e3, 0.5),
-        Application.filling(4.0).brake(5e3, 0.5),
-        Application.step().reduced(0.58).brake(5e3, 0.5),
-        Application.step().brake(5e3, 0.5).replaced(law=CAST_IRON),
-        Application.step().brake(5e3, 0.5).replaced(speeds=np.array([0.0, 60.0]), frictions=np.array([0.4, 0.3])),
+        "torque: 5 kN m, application: {form: linear, time: 4 s}",
+        "torque: 5 kN m, application: P",
+        "torque: 5 kN m, slide_protection: {}",
+        "blocks: {count: 2, force: 25 kN, friction: 0.27}",
     ],
-    ids=["linear", "filling", "reduced", "cast iron", "table"],
 )
-def test_the_second_code_refuses_brakes_that_it_does_not_know(shipped, monkeypatch, brake):
-    monkeypatch.setattr(exudyn_bodies, "brake_of", lambda _: brake)
+def test_the_second_code_refuses_brakes_that_it_does_not_know(shipped, keys):
+    case = shipped("paper_80", f"braking={{initial_speed: 80 km/h, onset: 0.5 s, {keys}}}")
     with pytest.raises(ValueError, match="constant torque applied at once"):
-        exudyn_bodies.WheelContact(shipped("paper_80"))
+        exudyn_bodies.WheelContact(case)
 
 
 def test_the_second_code_refuses_a_gradient_and_takes_the_wagon_of_the_paper(shipped):

@@ -13,7 +13,7 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse
-from slosh_cli.wagon.brake import CONSTANT, brake_of
+from slosh_cli.wagon.torque import brake_torque
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class WheelContact:
         self.gradient = shear * np.pi * a * b * steel.kalker_c11 / 4  # times N^(-1/3)
         self.adhesion = PolachParameters(p.kA, p.kS, p.mu0, p.A, p.B)
         self.resistance = scenario.wagon.running_resistance
-        self.torque, self.onset = scenario.brake_torque(0.0), scenario.braking.onset
+        self.torque, self.onset = brake_torque(scenario, 0.0), scenario.braking.onset
 
     def braking(self, time: float) -> float:
         """Torque on the wheel, N m; the stop is over before a wheel locks.
@@ -93,9 +93,9 @@ class WheelContact:
 
 
 def _refuse_what_is_left_out(scenario: Scenario) -> None:
-    brake: Any = brake_of(scenario)
-    at_once = len(brake.starts) == 1 and brake.base[0] == 1.0 and brake.slope[0] == brake.amplitude[0] == 0.0
-    if not at_once or brake.law != CONSTANT or len(brake.frictions) > 1:
+    braking = scenario.braking
+    at_once = braking.application.stretches == ((0.0, 1.0, 0.0, 0.0, 0.0),)
+    if not at_once or braking.rubbing is not None or braking.slide_protection is not None:
         raise ValueError("the brake must be a constant torque applied at once: the second code knows no other")
     if scenario.track.gradient:
         raise ValueError(f"the gradient must be 0, but is {scenario.track.gradient}: the second code knows no gradient")
