@@ -26,6 +26,8 @@ NAMES: Final = (
     "hertz",
     "polach",
     "point-mass",
+    "brakes",
+    "stopping-table",
     "momentum",
     "energy",
     "second-code",

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from second_wagon import Brake, filling, pressed, ramp, second_stop
 
-from slosh_cli.scenario.schema_run import Braking
-
 RIGID = (
     "tank.coefficients=computed",
     "track.rail.youngs_modulus=1e13 Pa",
@@ -82,10 +80,6 @@ BRAKES = {
 }
 
 
-KEYED = pytest.mark.skipif("application" not in Braking.model_fields, reason="no scenario can say this yet")
-
-
-@KEYED
 @pytest.mark.parametrize("name", BRAKES)
 def test_a_brake_that_builds_up_and_fades(stop, name):
     keys, brake = BRAKES[name]
@@ -98,7 +92,6 @@ def test_a_brake_that_builds_up_and_fades(stop, name):
     assert ours.braking_distance_m == pytest.approx(theirs.distance, rel=1e-6)
 
 
-@KEYED
 def test_cast_iron_locks_wheels_towards_the_stop(stop):
     """Blocks of a loaded wagon on poor adhesion: torque grows as speed falls, and the lock comes late."""
     keys, brake = BRAKES["cast iron, ramped"]

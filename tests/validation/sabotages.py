@@ -147,6 +147,29 @@ SABOTAGES: dict[str, Sabotage] = {
     "point_mass_resistance": edit(
         "point-mass", "solver.setup", "_line", "resistance=HALF *", "resistance=1.0 *", "distance"
     ),
+    "brakes_cast_iron": edit(
+        "brakes",
+        "wagon.brake",
+        "Brake.friction",
+        "5.0, 100.0, v",
+        "4.0, 100.0, v",
+        "blocks, cast iron",
+        copy=True,
+    ),
+    "brakes_build_up": edit(
+        "brakes", "wagon.brake", "Application.linear", "[(0.0, 0.0)", "[(0.0, 0.1)", "built up in 4 s: longer by"
+    ),
+    "stopping_table_gradient": edit(
+        "stopping-table", "solver.setup", "_line", "pull=-STANDARD", "pull=STANDARD", "1 in 100 up"
+    ),
+    "stopping_table_build_up": edit(
+        "stopping-table",
+        "wagon.brake",
+        "Application.table",
+        "(after - share) / (end - start)",
+        "0.9 * (after - share) / (end - start)",
+        "level / m",
+    ),
     "momentum_reaction": edit(
         "momentum",
         "tank.modal",
