@@ -14,6 +14,7 @@ from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.exact.friction import friction_law, ramped_stop
 from slosh_cli.validation.exact.wagon import point_wagon, stopping
 from slosh_cli.validation.runs import distance, scenario, stop
+from slosh_cli.wagon.torque import brake_torque
 
 _KM_H = 1 / 3.6  # in m/s
 
@@ -100,7 +101,7 @@ def _coefficients(found: Findings) -> None:
     for law, force, speed, known in found.data.reference["coefficients"]:
         keys = f"initial_speed: 100 km/h, onset: 0 s, blocks: {{count: 1, force: {force} kN, friction: {law}}}"
         case = scenario(found.data.reference["scenario"], f"braking={{{keys}}}")
-        torque = case.brake_torque(speed * _KM_H)
+        torque = brake_torque(case, speed * _KM_H)
         value = torque / (1e3 * force * case.wagon.wheelset.wheel_radius)
         found.compare(f"friction coefficient, {law}, {force} kN, {speed} km/h", value, known, "printed")
 
