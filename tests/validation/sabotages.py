@@ -148,26 +148,34 @@ SABOTAGES: dict[str, Sabotage] = {
         "point-mass", "solver.setup", "_line", "resistance=HALF *", "resistance=1.0 *", "distance"
     ),
     "brakes_cast_iron": edit(
-        "brakes",
-        "wagon.brake",
-        "Brake.friction",
-        "5.0, 100.0, v",
-        "4.0, 100.0, v",
-        "blocks, cast iron",
-        copy=True,
+        "brakes", "friction", "cast_iron", "5.0 * speed", "4.0 * speed", "blocks, cast iron", copy=True
     ),
     "brakes_build_up": edit(
-        "brakes", "wagon.brake", "Application.linear", "[(0.0, 0.0)", "[(0.0, 0.1)", "built up in 4 s: longer by"
+        "brakes",
+        "scenario.schema_application",
+        "LinearApplication.stretches",
+        "1.0 / self.time",
+        "0.9 / self.time",
+        "built up in 4 s: longer by",
+        copy=True,
+    ),
+    "brakes_braked_weight": edit(
+        "brakes",
+        "wagon.torque",
+        "constant_torque",
+        "_braking_force(moved_mass(scenario)",
+        "_braking_force(total_mass(scenario)",
+        "braked weight 65 %",
     ),
     "stopping_table_gradient": edit(
         "stopping-table", "solver.setup", "_line", "pull=-STANDARD", "pull=STANDARD", "1 in 100 up"
     ),
-    "stopping_table_build_up": edit(
+    "stopping_table_deceleration": edit(
         "stopping-table",
-        "wagon.brake",
-        "Application.table",
-        "(after - share) / (end - start)",
-        "0.9 * (after - share) / (end - start)",
+        "wagon.torque",
+        "constant_torque",
+        "braking.deceleration * moved_mass",
+        "braking.deceleration * total_mass",
         "level / m",
     ),
     "momentum_reaction": edit(
