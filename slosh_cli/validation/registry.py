@@ -29,6 +29,8 @@ NAMES: Final = (
     "gradient",
     "uneven-rail",
     "wheel-flat",
+    "brakes",
+    "stopping-table",
     "momentum",
     "energy",
     "second-code",

@@ -204,6 +204,37 @@ SABOTAGES: dict[str, Sabotage] = {
         "blows",
         copy=True,
     ),
+    "brakes_cast_iron": edit(
+        "brakes", "friction", "cast_iron", "5.0 * speed", "4.0 * speed", "blocks, cast iron", copy=True
+    ),
+    "brakes_build_up": edit(
+        "brakes",
+        "scenario.schema_application",
+        "LinearApplication.stretches",
+        "1.0 / self.time",
+        "0.9 / self.time",
+        "built up in 4 s: longer by",
+        copy=True,
+    ),
+    "brakes_braked_weight": edit(
+        "brakes",
+        "wagon.torque",
+        "constant_torque",
+        "_braking_force(moved_mass(scenario)",
+        "_braking_force(total_mass(scenario)",
+        "braked weight 65 %",
+    ),
+    "stopping_table_gradient": edit(
+        "stopping-table", "solver.setup", "_line", "pull=-STANDARD", "pull=STANDARD", "1 in 100 up"
+    ),
+    "stopping_table_deceleration": edit(
+        "stopping-table",
+        "wagon.torque",
+        "constant_torque",
+        "braking.deceleration * moved_mass",
+        "braking.deceleration * total_mass",
+        "level / m",
+    ),
     "momentum_reaction": edit(
         "momentum",
         "tank.modal",

@@ -52,9 +52,13 @@ class Bodies:
 
 
 class WheelContact:
-    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation)."""
+    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation).
+
+    Raises ValueError for a brake that builds up or fades and for a gradient: the second code would leave them out.
+    """
 
     def __init__(self, scenario: Scenario) -> None:
+        _refuse_what_is_left_out(scenario)
         steel, p = scenario.contact, scenario.contact.adhesion
         self.radius = scenario.wagon.wheelset.wheel_radius
         a, b, approach = ellipse(self.radius, steel.rail_crown_radius, steel.youngs_modulus, steel.poisson_ratio, 1.0)
@@ -86,6 +90,16 @@ class WheelContact:
         terms = self.resistance
         rolling = (terms.constant + terms.linear * rate[0] + terms.quadratic * rate[0] ** 2) / 8
         return np.array([-creep - rolling, normal, self.braking(time) - creep * self.radius])
+
+
+def _refuse_what_is_left_out(scenario: Scenario) -> None:
+    braking = scenario.braking
+    at_once = braking.application.stretches == ((0.0, 1.0, 0.0, 0.0, 0.0),)
+    if not at_once or braking.rubbing is not None or braking.slide_protection is not None:
+        raise ValueError("the brake must be a constant torque applied at once: the second code knows no other")
+    track = scenario.track
+    if any(gradient for _, gradient in track.gradient_points) or track.unevenness or scenario.wagon.wheel_flats:
+        raise ValueError("the line must be level, rails and wheels even: the second code knows no others")
 
 
 def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[float, float, float]:
