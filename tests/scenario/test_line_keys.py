@@ -54,6 +54,7 @@ def refused(folder: Path, track: str = "", wagon: str = "") -> ScenarioError:
         ("unevenness: {dips: [{position: -5 m, length: 1 m, depth: 2 mm}]}", "from 0 m"),
         ("unevenness: {dips: [{position: 50 m, length: 1 m, depth: 2 mm}], seed: 1}", "beside `sigma` or `spectrum`"),
         ("unevenness: {file: 3}", "the name of a CSV file"),
+        ('unevenness: {file: ""}', "the name of a CSV file"),
     ],
 )
 def test_what_no_track_looks_like_is_refused(tmp_path: Path, text: str, rule: str) -> None:
@@ -104,6 +105,11 @@ def test_a_measured_rail_is_refused_by_its_line(tmp_path: Path, rows: str, place
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"rail\.csv: must exist"):
         load_scenario(written(tmp_path, track="unevenness: {file: rail.csv}"))
+
+
+def test_a_name_that_no_folder_can_hold_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match=r"must be readable; given `File name too long`"):
+        load_scenario(written(tmp_path, track=f"unevenness: {{file: {300 * 'x'}.csv}}"))
 
 
 def measured(folder: Path, height: float) -> Scenario:
