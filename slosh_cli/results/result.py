@@ -166,6 +166,13 @@ class Record(Answers):
     channels: Mapping[str, Vector]
 
     @property
+    def torque_words(self) -> str:
+        """The brake torque per wheel: of one that grows towards the stop, at the initial speed and at its largest."""
+        most = max(getattr(self, "brake_torque_max_N_m", (0.0,)))  # files of earlier versions have none
+        grown = f" to {most / 1e3:.4g}" if most > 1.001 * self.torque_N_m else ""
+        return f"{self.torque_N_m / 1e3:.4g}{grown} kN m per wheel"
+
+    @property
     def has_liquid(self) -> bool:
         """Whether the load can slosh."""
         return self.liquid_model != "rigid"
@@ -188,7 +195,7 @@ class Record(Answers):
     def __repr__(self) -> str:
         """What it was, how it ended, and the checks exceeded most: less than a screen."""
         found = vars(self)  # a file of an earlier version may lack some
-        load = f"{self.torque_N_m / 1e3:.4g} kN m per wheel, load: {self.liquid_model}"
+        load = f"{self.torque_words}, load: {self.liquid_model}"
         lines = [f"{type(self).__name__} {self.name}: {self.initial_speed_m_s * 3.6:.4g} km/h, {load}"]
         if self.braking_distance_m is None:
             lines.append(f"  {self.status}, no braking distance: {self.reason}")
