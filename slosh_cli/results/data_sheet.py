@@ -8,8 +8,8 @@ from slosh_cli.arrays import Vector
 from slosh_cli.results.recommendation import total_mass
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.section import liquid_depth, section_of
 from slosh_cli.wagon.model import CAR_HEAVE, wagon_model
 
 

@@ -14,6 +14,7 @@ from typing import Literal
 
 from slosh_cli.results.liquid_range import FREQUENCY_LIMIT, room_and_depth
 from slosh_cli.scenario import Scenario, Tank, TankScenario
+from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.still import frequency_excess
@@ -158,5 +159,4 @@ def deceleration_of(scenario: Scenario | TankScenario) -> float | None:
 
 def total_mass(scenario: Scenario) -> float:
     """Mass of the whole wagon with its load, kg."""
-    wagon = scenario.wagon
-    return wagon.car_body.mass + 2.0 * wagon.bogie.mass + 4.0 * wagon.wheelset.mass + frozen_load(scenario.tank).mass
+    return tare_of(scenario.wagon) + frozen_load(scenario.tank).mass

@@ -105,6 +105,9 @@ class Record(Answers):
     liquid_in_range: bool = derived(
         "", "whether the run stayed in the range of the liquid's model", Place.RANGE, shown=Shown.STUDY,
         of=lambda run: all(check.within for check in _of_range(run) if check.name not in _NOT_THE_LIQUID))
+    fill: float = derived(
+        "1", "depth of the still liquid over the tank's inner height", Place.SURFACE, given="tank.fill",
+        shown=~Shown.JSON)
     max_surface_m: float = computed(
         "m", "largest rise of the free surface at an end wall", Place.SURFACE,
         line=Told(4, "surface rise at an end wall, largest", ".2f", "m"))

@@ -19,6 +19,7 @@ from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import section_of
 from slosh_cli.solver import advance
 from slosh_cli.solver.record import Columns, columns_of
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
@@ -37,7 +38,6 @@ from slosh_cli.solver.vehicle import (
 from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.modal import ModalLiquid
-from slosh_cli.tank.section import section_of
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION
 

@@ -15,8 +15,8 @@ from slosh_cli.arrays import Vector
 from slosh_cli.results.recommendation import stop_deceleration, total_mass
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario, rail_reach
+from slosh_cli.section import section_of
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.section import section_of
 from slosh_cli.wagon.model import POSITION, wagon_model
 
 _AXLE_LOAD_LIMIT = 22.5
