@@ -9,7 +9,7 @@ import re
 from pathlib import Path
 
 from slosh_cli.results.answers import Answer, PerWheel, Shown
-from slosh_cli.results.channels import CHANNELS, TIME, channel, slosh_amplitude
+from slosh_cli.results.channels import CHANNELS, LINE_CHANNELS, TIME, channel, slosh_amplitude
 from slosh_cli.results.result import Result
 from slosh_cli.scenario import Scenario
 
@@ -39,7 +39,7 @@ The histories of `run.h5`, `to_frame()` and `to_xarray()`.
 
 def page() -> str:
     """The whole page."""
-    channels = [TIME, *CHANNELS.values(), channel(slosh_amplitude(1))]
+    channels = [TIME, *CHANNELS.values(), channel(slosh_amplitude(1)), *LINE_CHANNELS.values()]
     rows = dict.fromkeys(
         f"| `{numbered(one.name)}` | {unit(one.unit)} | {numbered(one.long_name)} |\n" for one in channels
     )

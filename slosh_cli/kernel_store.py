@@ -24,7 +24,7 @@ from typing import Any, Final
 
 PARTS: Final = ("tank", "wagon", "track", "solver")
 """Packages with kernels, and with the constants and types that kernels use."""
-_MODULES: Final = ("compiled", "kernel_store", "arrays", "blocks", "method", "vectors")
+_MODULES: Final = ("compiled", "kernel_store", "arrays", "blocks", "friction", "method", "vectors")
 """Modules beside them that decide about machine code."""
 
 _OWN: Final = re.compile(r"[0-9a-f]{16}(-\d+)?")

@@ -11,7 +11,19 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "slosh_cli"
 
 ORDER = [
-    {"version", "errors", "compiled", "kernel_store", "arrays", "blocks", "method", "vectors", "section", "outline"},
+    {
+        "version",
+        "errors",
+        "compiled",
+        "kernel_store",
+        "arrays",
+        "blocks",
+        "friction",
+        "method",
+        "vectors",
+        "section",
+        "outline",
+    },  # fmt: skip
     {"scenario"},
     {"tank"},
     {"wagon"},

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from itertools import cycle
 from pathlib import Path
 from tempfile import mkdtemp
 from types import FunctionType
@@ -33,9 +34,9 @@ def twice(brake):
 """
 ASK = """
 from slosh_cli import compiled
-from slosh_cli.wagon.brake import Application
+from slosh_cli.wagon.brake import torque_brake
 from slosh_cli.wagon.probe import twice
-value = twice(Application.step().brake(100.0, 0.5).replaced(breaks=1))
+value = twice(torque_brake(100.0, 0.5).replaced(breaks=1))
 print(value, sum(twice.stats.cache_hits.values()), bool(compiled.not_kept()))
 """
 """Prints the torque that the compiled code gives, how often it was kept code, and whether nothing can be kept."""
@@ -68,8 +69,8 @@ def ask(copy: Path, *command: str, **environment: object) -> tuple[float, int, b
 def edit_the_callee(copy: Path) -> None:
     file = copy / "slosh_cli/wagon/brake.py"
     text = file.read_text()
-    assert "return (self.full if" in text
-    file.write_text(text.replace("return (self.full if", "return (0.5 * self.full if"))
+    assert "return pull * value," in text
+    file.write_text(text.replace("return pull * value,", "return 0.5 * pull * value,"))
 
 
 def places_that_refuse(folder: Path) -> dict[str, dict[str, object]]:
@@ -104,8 +105,8 @@ def test_damaged_files_are_compiled_anew_and_replaced(copy: Path, tmp_path: Path
     home = {"NUMBA_CACHE_DIR": tmp_path / "cache"}
     ask(copy, **home)
     files = sorted((tmp_path / "cache").rglob("*.nbc"))
-    assert len(files) == 2
-    for file, damage in zip(files, (_one_bit_turned, lambda content: content[:-7]), strict=True):
+    assert len(files) >= 2
+    for file, damage in zip(files, cycle((_one_bit_turned, lambda content: content[:-7])), strict=False):
         file.write_bytes(damage(file.read_bytes()))
     assert ask(copy, **home) == (200.0, 0, False)
     assert ask(copy, **home) == (200.0, 1, False)

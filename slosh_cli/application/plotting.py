@@ -62,7 +62,7 @@ def _run_figures(record: Record) -> Figures:
 
         return FIGURES[name](record)
 
-    return {name: partial(draw, name) for name in FIGURE_NAMES if name != "slosh" or record.has_liquid}
+    return {name: partial(draw, name) for name in FIGURE_NAMES if record.has_figure(name)}
 
 
 def case_figures(result: CaseResult) -> Figures:

@@ -26,6 +26,7 @@ RUN_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
 
 def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recommendation]:
     """What can be told before anything moves: verdicts, and the model of the liquid that suits."""
+    from slosh_cli.results.line import descent_checks
     from slosh_cli.results.liquid_range import expected_checks, tank_checks
     from slosh_cli.results.recommendation import deceleration_of, recommend
     from slosh_cli.results.wagon_range import lock_check, speed_check, wagon_checks
@@ -36,7 +37,7 @@ def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recom
     if deceleration is not None:
         verdicts += expected_checks(tank, deceleration, advice.sentence)
     if isinstance(scenario, Scenario):
-        verdicts += (*wagon_checks(scenario), speed_check(scenario), lock_check(scenario))
+        verdicts += (*wagon_checks(scenario), speed_check(scenario), lock_check(scenario), *descent_checks(scenario))
     return verdicts, advice
 
 

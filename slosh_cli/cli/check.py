@@ -16,20 +16,27 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     from slosh_cli.results.data_sheet import data_sheet
     from slosh_cli.results.validity import plain_checks, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
+    from slosh_cli.track.spectrum import level_words, realised_level
 
     scenario = load_given(load_any_scenario, scenario_file, overrides)
     kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
     verdicts, advice = outlook(scenario)
     warnings = warnings_of(verdicts)
     sheet = data_sheet(scenario) if isinstance(scenario, Scenario) else {}
+    track = scenario.track if isinstance(scenario, Scenario) else None
+    level = level_words(track.unevenness) if track else ""
     if as_json:
         found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
         found["data_sheet"] = sheet
+        if track and level:
+            found["unevenness_d1_m"] = realised_level(track.unevenness)
         say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
     else:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
         for name, value in sheet.items():
             say(f"  {name:<20} {value:10.3f}")
+        if level:
+            say(level)
         say(advice.sentence)
         for warning in warnings:
             warn(warning)

@@ -82,6 +82,7 @@ _WORDS: Final[Mapping[str, Callable[[Result, Told], str]]] = {
     "max_surface_m": _surface,
     "in_model_range": _range,
     "recommendation": _suiting,
+    "unevenness_d1_m": lambda run, line: _text(run.unevenness_d1_m, line) if run.unevenness_d1_m is not None else "",
     "mean_total_wheel_load_N": lambda run, line: _text(run.mean_total_wheel_load_N / run.weight_N - 1.0, line),
     "steps": lambda run, _: f"{run.steps} accepted, {run.rejected_steps} rejected",
     "solve_seconds": lambda run, _: f"{run.solve_seconds:.2f} s, {run.microseconds_per_step:.0f} microseconds per step",

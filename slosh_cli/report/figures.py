@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from slosh_cli.arrays import Vector
 from slosh_cli.report import FIGURE_NAMES, FORMATS
 from slosh_cli.report.saving import INK, MUTED, save, styled
 from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
@@ -44,7 +45,7 @@ def draw_run(
         return [
             file
             for name, draw in FIGURES.items()
-            if name in names and (name != "slosh" or record.has_liquid)
+            if name in names and record.has_figure(name)
             for file in save(draw(record), folder, name, formats)
         ]
 
@@ -131,11 +132,45 @@ def _slosh(record: Record) -> Figure:
     return figure
 
 
+def _line(record: Record) -> Figure:
+    """The stop against the distance, and under it the line: its height with the gradient, the level of its rails."""
+    position, rows = record.channels["position"], _line_rows(record)
+    figure, (speed, loads, *under) = _panels(
+        record, "The stop on its line", [1.0, 1.0, *(0.9 for _ in rows)], height=9.0
+    )
+    speed.plot(position, record.channels["speed"] * 3.6, color=INK)
+    speed.set_ylabel("speed / km/h")
+    speed.set_ylim(bottom=min(0.0, float(record.channels["speed"].min()) * 3.6))
+    for i in _ENDS:
+        loads.plot(position, record.channels[wheel(i, "normal_force")] / 1e3, **_WHEEL_STYLES[i] | {"linewidth": 1.1})
+    loads.set_ylabel("normal force\nper wheel / kN")
+    _legend(loads, columns=2)
+    for axes, (label, values) in zip(under, rows, strict=True):
+        axes.fill_between(position, values, float(values.min()) - 0.1 * (np.ptp(values) or 1.0), color="#d9d9d9")
+        axes.plot(position, values, color=INK, linewidth=1.2)
+        axes.set_ylabel(label)
+    onset = float(np.interp(record.onset_s, record.time, position))
+    for axes in (speed, loads, *under):
+        axes.set_xlim(float(position[0]), max(float(position.max()), 0.1) * 1.01)
+        if record.onset_s < record.time[-1]:
+            axes.axvline(onset, color=MUTED, linewidth=1.0, linestyle=(0, (2, 2)), zorder=1)
+    (under or [loads])[-1].set_xlabel("distance / m")
+    return figure
+
+
+def _line_rows(record: Record) -> list[tuple[str, Vector]]:
+    """Label and values of what the line has beside being level and even."""
+    units = {"line_height": ("height of\nthe line / m", 1.0), "line_gradient": ("gradient\n/ permille", 1e3)}
+    units["rail_level"] = ("rail level under\nwheel 1 / mm", 1e3)
+    return [(label, per * record.channels[name]) for name, (label, per) in units.items() if name in record.channels]
+
+
 FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
     "contact_forces": _contact_forces,
     "speed_distance": _speed_distance,
     "wheel_speed": _wheel_speed,
     "slosh": _slosh,
+    "line": _line,
 }
 """Every figure of a run, by the name of its files."""
 

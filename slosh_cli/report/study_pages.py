@@ -12,6 +12,7 @@ from slosh_cli.scenario.schema_run import ADHESIONS
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
 from slosh_cli.study.table import column_of
+from slosh_cli.wagon.torque import nominal_torque
 
 _T = TypeVar("_T")
 
@@ -136,7 +137,7 @@ def _conditions(study: Study, page: str) -> str:
     words += [f"{name_of(axis)} {axis.values[0]}" for axis in fixed]
     keys = {axis.key for axis in study.axes}
     if TORQUE not in keys:
-        words.append(f"{study.base.nominal_torque / 1e3:g} kN m per wheel")
+        words.append(f"{nominal_torque(study.base) / 1e3:g} kN m per wheel")
     tank = study.base.tank
     words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
     words += [f"fill {tank.fill:g}"] if "tank.fill" not in keys else []

@@ -62,7 +62,7 @@ class Answer:
     name, kind: name and type of its attribute.
     place, column, per: its column in tables, by another name and counted in `per` SI units where that is usual.
     given: key path in the scenario that it is taken from; of: how it follows from other answers; else it is computed.
-    needed: whether a file without it is no history of a run.
+    needed: whether a file without it is no history of a run; optional: JSON leaves it out where there is none.
     """
 
     unit: str
@@ -75,6 +75,7 @@ class Answer:
     given: str = ""
     of: Callable[[Any], Any] | None = None
     needed: bool = False
+    optional: bool = False
     line: Told | None = None
     name: str = ""
     kind: Any = None
@@ -150,7 +151,8 @@ class Answers:
 
     def as_dict(self) -> dict[str, Any]:
         """The answers as JSON has them, by name; None where a number is missing."""
-        return {one.name: _plain(value) for one, value in self._held(Shown.JSON) if one.unit or value is not None}
+        held = self._held(Shown.JSON)
+        return {one.name: _plain(v) for one, v in held if v is not None or (one.unit and not one.optional)}
 
     def as_attributes(self) -> dict[str, Any]:
         """The answers as attributes of a file, by name."""

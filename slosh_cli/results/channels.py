@@ -55,7 +55,16 @@ _WHEEL = (
     ("tangential_force", "N", "tangential contact force of wheel {i}, positive when it brakes"),
     ("brake_torque", "N m", "brake torque transmitted to wheel {i}"),
     ("rail_deflection", "m", "rail displacement under wheel {i}, positive up"),
+    ("held_torque", "N m", "torque that the brake of wheel {i} can hold"),
 )
+
+_BRAKE = Channel("brake_application", "1", "part of the full brake force that presses, without slide protection")
+
+_OPTIONAL = (
+    ("friction", "1", "friction coefficient of the brake of wheel {i}"),
+    ("slide_protection_share", "1", "part of the brake force that slide protection leaves to wheel {i}"),
+)
+"""Of wheels with a brake that has it."""
 
 _LIQUID = (
     Channel("liquid_force", "N", "longitudinal force of the liquid on the tank, positive forward"),
@@ -74,7 +83,7 @@ _ENERGY = (
     Channel("energy_foundation", "J", "energy taken by the track foundation so far"),
     Channel("energy_resistance", "J", "energy taken by the running resistance so far"),
     Channel("energy_slosh_damping", "J", "energy taken by slosh damping so far"),
-    Channel("energy_slope_work", "J", "work done by the wheels' own dip in the rail so far"),
+    Channel("energy_slope_work", "J", "work of the rail's slope under the wheels, and of flats, so far"),
     Channel("energy_gradient", "J", "work done against gravity on the gradient so far"),
     Channel("energy_residual", "1", "residual of the energy ledger over the initial kinetic energy"),
 )
@@ -89,13 +98,32 @@ def _fixed_channels() -> tuple[Channel, ...]:
     wheels = (
         Channel(wheel(i, quantity), unit, meaning.format(i=i)) for i in WHEELS for quantity, unit, meaning in _WHEEL
     )
-    return (*_WAGON, *bogies, *wheels, *_LIQUID, *_ENERGY)
+    return (*_WAGON, *bogies, *wheels, _BRAKE, *_LIQUID, *_ENERGY)
 
 
 TIME = Channel("time", "s", "time since the start of the run")
 CHANNELS: Mapping[str, Channel] = MappingProxyType({channel.name: channel for channel in _fixed_channels()})
-"""Every channel that each run has, in file order; slosh amplitudes come on top, one per mode."""
+"""Every channel that each run has, in file order. On top come slosh amplitudes, one per mode, and what only some brakes
+have."""
 
+_OF_SOME_BRAKES = {
+    wheel(i, quantity): Channel(wheel(i, quantity), unit, meaning.format(i=i))
+    for quantity, unit, meaning in _OPTIONAL
+    for i in WHEELS
+}
+LINE_CHANNELS: Mapping[str, Channel] = MappingProxyType(
+    {
+        one.name: one
+        for one in (
+            Channel("line_gradient", "1", "gradient where the wagon is, uphill positive; not on a level line"),
+            Channel(
+                "line_height", "m", "height of the line where the wagon is, zero at the start; not on a level line"
+            ),
+            Channel("rail_level", "m", "height of the unloaded rail under wheel 1; not on even rails"),
+        )
+    }
+)
+"""Channels of runs whose line is not level or not even."""
 _SLOSH_AMPLITUDE = re.compile(r"slosh_([1-9][0-9]*)_amplitude")
 
 
@@ -104,8 +132,9 @@ def channel(name: str) -> Channel:
 
     Raises KeyError when no channel has that name.
     """
-    if name in CHANNELS:
-        return CHANNELS[name]
+    known = CHANNELS.get(name) or LINE_CHANNELS.get(name) or _OF_SOME_BRAKES.get(name)
+    if known is not None:
+        return known
     match = _SLOSH_AMPLITUDE.fullmatch(name)
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from slosh_cli.arrays import Vector
-from slosh_cli.results.recommendation import total_mass
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.wagon.model import CAR_HEAVE, wagon_model
+from slosh_cli.wagon.torque import brake_torque, total_mass
 
 
 def data_sheet(scenario: Scenario) -> dict[str, float]:
@@ -39,7 +39,7 @@ def data_sheet(scenario: Scenario) -> dict[str, float]:
         "axle_load_front_t": float(axles[0]) / 1e3,
         "axle_load_rear_t": float(axles[-1]) / 1e3,
         "centre_of_gravity_m": moment / gross,
-        "tau": 8.0 * scenario.braking.torque / (radius * gross * STANDARD_GRAVITY),
+        "tau": 8.0 * brake_torque(scenario, 0.0) / (radius * gross * STANDARD_GRAVITY),
     }
 
 

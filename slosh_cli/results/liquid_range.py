@@ -14,7 +14,7 @@ from slosh_cli.tank.still import frequency_excess
 
 FREQUENCY_LIMIT = 0.05
 """Shallow water is used where its first frequency is this close to potential flow's."""
-SLOT_LIMIT = 0.1
+_SLOT_LIMIT = 0.1
 """A slot that may hold more than this part of the room above the liquid changes the surface elsewhere."""
 
 
@@ -127,7 +127,7 @@ def _slot_check(tank: Tank, head: float) -> Check:
         "liquid in the slot over the room above the liquid",
         "model",
         share,
-        SLOT_LIMIT,
+        _SLOT_LIMIT,
         f"Under its head the slot above the roof may hold up to {share:.0%} of the room above the liquid: the surface "
         "elsewhere sinks for it, so that the shift of weight and the wheel unloading come out too large. Raise "
         "tank.liquid.slot_speed, or treat the load of so full a tank as rigid (tank.liquid.model: rigid).",

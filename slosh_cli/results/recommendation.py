@@ -16,8 +16,8 @@ from slosh_cli.results.liquid_range import FREQUENCY_LIMIT, room_and_depth
 from slosh_cli.scenario import Scenario, Tank, TankScenario
 from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.units import STANDARD_GRAVITY
-from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.still import frequency_excess
+from slosh_cli.wagon.torque import brake_torque, moved_mass, total_mass
 
 _MovingLiquid = Literal["modal", "shallow-water"]
 
@@ -140,23 +140,27 @@ def shallow_error(excess: float) -> float:
 
 
 def stop_deceleration(scenario: Scenario) -> float:
-    """Deceleration (m/s^2) of the wagon as a rigid point mass at its initial speed: by torque, at most by adhesion."""
+    """Deceleration (m/s^2) of the wagon as a rigid point mass at its initial speed: by torque, at most by adhesion.
+
+    It is what a load feels: gravity's pull on a gradient is left out, which pulls the load along (theory section 14).
+    """
     wagon, brake = scenario.wagon, scenario.braking
     resistance = wagon.running_resistance
     speed, radius = brake.initial_speed, wagon.wheelset.wheel_radius
     drag = resistance.constant + resistance.linear * speed + resistance.quadratic * speed**2
     mass = total_mass(scenario)
-    rolling = (8.0 * scenario.brake_torque(speed) / radius + drag) / (
-        mass + 4.0 * wagon.wheelset.spin_inertia / radius**2
-    )
+    rolling = (8.0 * brake_torque(scenario, speed) / radius + drag) / moved_mass(scenario)
     return min(rolling, scenario.contact.adhesion.mu0 * STANDARD_GRAVITY + drag / mass)
 
 
 def deceleration_of(scenario: Scenario | TankScenario) -> float | None:
     """The same of any scenario; None for a tank alone, which nothing decelerates."""
     return stop_deceleration(scenario) if isinstance(scenario, Scenario) else None
+<<<<<<< HEAD
 
 
 def total_mass(scenario: Scenario) -> float:
     """Mass of the whole wagon with its load, kg."""
     return tare_of(scenario.wagon) + frozen_load(scenario.tank).mass
+=======
+>>>>>>> main

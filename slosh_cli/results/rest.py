@@ -1,4 +1,4 @@
-"""Is a stopped wagon at rest for good? What the liquid can still push, beside what holds the wagon.
+"""Is a stopped wagon at rest for good? What liquid and gradient can still push, beside what holds the wagon.
 
 A run ends at the first passage of the stop speed. The liquid then still moves. Here the tank is held still, with the
 pitch that it has, and the liquid goes on by itself; brakes, rails and running resistance hold the wagon as long as the
@@ -7,12 +7,11 @@ largest force of that liquid stays below what they can bear.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from slosh_cli.arrays import Vector
 from slosh_cli.method import START
+from slosh_cli.results.line import gradient_at
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.solver import excite_kernels
@@ -22,10 +21,8 @@ from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.tank.shallow import WORK_ROWS
-from slosh_cli.wagon.model import CAR_PITCH
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from slosh_cli.wagon.brake import holding_torque
+from slosh_cli.wagon.model import CAR_PITCH, POSITION
 
 _PERIODS = 4.0
 """Periods of the first mode that the modes are looked at for."""
@@ -41,31 +38,39 @@ _REST_SPEED = 0.1
 
 
 def rest_checks(scenario: Scenario, stop: ReadyStop) -> tuple[Check, ...]:
-    """Whether the liquid of a stopped wagon can push it on; nothing for a frozen load and for a high stop speed."""
-    if type(stop.vehicle.liquid) is Slosh or scenario.braking.stop_speed > _REST_SPEED:
+    """Whether a stopped wagon can be pushed on by its liquid, or by gravity on a gradient; nothing for a frozen load on
+    the level and for a high stop speed."""
+    gradient = gradient_at(scenario, float(stop.vehicle.points[START].q[POSITION]))
+    frozen = type(stop.vehicle.liquid) is Slosh
+    if (frozen and not gradient) or scenario.braking.stop_speed > _REST_SPEED:
         return ()
-    (on, back), held = largest_pushes(stop.vehicle), holding_force(scenario, stop.static_loads)
+    vehicle, wheels = stop.vehicle, range(stop.vehicle.wagon.wheels)
+    torques = np.array([holding_torque(vehicle.brake, wheel, stop.train.time) for wheel in wheels])
+    (on, back), held = largest_pushes(vehicle), holding_force(scenario, stop.static_loads, torques)
+    rolling = stop.weight / HALF * gradient
+    on, back = on - rolling, back + rolling
     push, way = max(on, back), "on" if on > held else "back"
+    pusher = "the gradient" if frozen else "its liquid and the gradient" if gradient else "its liquid"
     return (
         Check(
-            "push of the liquid after the stop over what holds the wagon",
+            f"push of {pusher.replace('its', 'the')} after the stop over what holds the wagon",
             "operation",
             push,
             held,
-            f"The wagon stops, but it is not at rest: held still, its liquid would push it {way} with up to "
+            f"The wagon stops, but it is not at rest: held still, {pusher} would push it {way} with up to "
             f"{push / 1e3:.3g} kN, and brakes and resistance hold {held / 1e3:.3g} kN. It will move on again; the "
             "braking distance is that of the first stop.",
         ),
     )
 
 
-def holding_force(scenario: Scenario, static_loads: Sequence[float] | Vector) -> float:
+def holding_force(scenario: Scenario, static_loads: Vector, torques: Vector) -> float:
     """Largest force (N) along the track that a standing wagon bears: eight braked wheels and running resistance.
 
-    `static_loads` (4,) N are those of the wheels on one rail.
+    Of the wheels on one rail: `static_loads` (4,) N and the `torques` (4,) N m that their brakes can hold.
     """
-    brake, wagon = scenario.brake_torque(0.0) / scenario.wagon.wheelset.wheel_radius, scenario.wagon
-    wheels = np.minimum(brake, scenario.contact.adhesion.mu0 * np.asarray(static_loads, dtype=np.float64))
+    wagon = scenario.wagon
+    wheels = np.minimum(torques / wagon.wheelset.wheel_radius, scenario.contact.adhesion.mu0 * static_loads)
     return float(wheels.sum() / HALF + wagon.running_resistance.constant)
 
 

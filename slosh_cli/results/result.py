@@ -11,9 +11,10 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
-from slosh_cli.results.channels import TIME, channel, wheel
+from slosh_cli.results.channels import LINE_CHANNELS, TIME, channel, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
+from slosh_cli.wagon.torque import nominal_torque
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,7 +96,7 @@ class Record(Answers):
         column="v0_km_h", per=1 / 3.6)
     torque_N_m: float = derived(
         "N m", "brake torque per wheel, fully applied, at the initial speed", Place.CONDITIONS,
-        given="nominal_torque", needed=True, column="torque_kN_m", per=1e3)
+        of=lambda run: nominal_torque(run.scenario), needed=True, column="torque_kN_m", per=1e3)
     onset_s: float = derived(
         "s", "time at which the brake sets in", Place.CONDITIONS, given="braking.onset", needed=True,
         shown=Shown.HISTORY)
@@ -130,10 +131,21 @@ class Record(Answers):
         line=Told(7, "wheel unloading, largest", ".1f", "% (usual limit: 60 %)", per=0.01))
     locked_time_s: PerWheel = computed(
         "s", "how long a wheel was locked", Place.WHEELS, line=Told(5, "locked / s", ".2f"))
+    brake_torque_max_N_m: PerWheel = computed(
+        "N m", "largest brake torque transmitted to a wheel", shown=~(Shown.SUMMARY | Shown.STUDY))
+    slide_protection_cycles: float | None = computed(
+        "1", "how often slide protection began to vent, all wheelsets; none without it", shown=~Shown.STUDY)
+    slide_protection_air: float | None = computed(
+        "1", "air that slide protection used: fillings of one wheelset's brake, all wheelsets; none without it",
+        shown=~Shown.STUDY)
     mean_total_wheel_load_N: float = computed(
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
         line=Told(8, "mean sum of wheel loads / weight - 1", ".1e"))
     weight_N: float = computed("N", "weight of wagon and load", shown=~Shown.JSON)
+    unevenness_d1_m: float | None = computed(
+        "m", "standard deviation in D1 (3-25 m) that a spectrum of the rails realises over the way; else none",
+        shown=Shown.JSON | Shown.HISTORY, default_factory=lambda: None, optional=True,
+        line=Told(12, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
     energy_residual: float = computed(
         "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
         line=Told(9, "energy ledger, largest residual", ".1e", "of the initial energy"))
@@ -160,6 +172,10 @@ class Record(Answers):
     def has_liquid(self) -> bool:
         """Whether the load can slosh."""
         return self.liquid_model != "rigid"
+
+    def has_figure(self, name: str) -> bool:
+        """Whether there is what the figure `name` shows: a liquid, a line that is not level or not even."""
+        return {"slosh": self.has_liquid, "line": not LINE_CHANNELS.keys().isdisjoint(self.channels)}.get(name, True)
 
     def locked_stretches(self, i: int) -> list[tuple[float, float]]:
         """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
-from slosh_cli.arrays import Matrix, Vector
+from slosh_cli.arrays import Vector
 from slosh_cli.method import START
 from slosh_cli.results.answers import PerWheel
-from slosh_cli.results.channels import WHEELS, slosh_amplitude, wheel
+from slosh_cli.results.histories import LOSS_PLACES, WHOLE, channels_of
+from slosh_cli.results.line import check_covered
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
@@ -18,24 +19,17 @@ from slosh_cli.results.result import Result, Status
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
+<<<<<<< HEAD
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import section_of
+=======
+>>>>>>> main
 from slosh_cli.solver import advance
-from slosh_cli.solver.record import Columns, columns_of
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
-from slosh_cli.solver.setup import HALF, ReadyStop, problem
-from slosh_cli.solver.vehicle import (
-    BRAKE,
-    CREEP,
-    FOUNDATION,
-    GRADIENT,
-    RESISTANCE,
-    SLOPE,
-    SLOSH_DAMPING,
-    SUSPENSION,
-    Vehicle,
-)
+from slosh_cli.solver.setup import ReadyStop, problem
+from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
+<<<<<<< HEAD
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.modal import ModalLiquid
 from slosh_cli.track.contact import CREEPAGE_SPEED_FLOOR
@@ -44,6 +38,11 @@ from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION
 _WHOLE = 1 / HALF
 """The model is half a wagon; results speak of the whole one."""
 
+=======
+from slosh_cli.tank.section import section_of
+from slosh_cli.track.spectrum import realised_level
+from slosh_cli.wagon.model import POSITION
+>>>>>>> main
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
     advance.STOPPED: (Status.STOPPED, ""),
@@ -87,6 +86,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     run = integrate(stop, progress, cancel)
     vehicle, time = stop.vehicle, stop.train.time
     end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
+    check_covered(scenario, float(end.q[POSITION]))
     status, reason = _ending(run, braked)
     stopped, tank, weight = status is Status.STOPPED, scenario.tank, stop.weight
     advice = _recommended(scenario)
@@ -99,17 +99,16 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         checks=verdicts,
         recommendation=advice,
         time=run.rows[:, 0, 0],
-        channels=_channels(scenario, vehicle, run.rows[:, 0]),
+        channels=channels_of(scenario, vehicle, run.rows[:, 0]),
         braking_distance_m=float(end.q[POSITION] - account.onset_position) if stopped else None,
         braking_time_s=time - account.onset_time if stopped else None,
         max_surface_m=account.surface,
         surface_limit_m=section_of(tank).height * (1 - tank.fill),
-        min_wheel_load_N=_per_wheel(account.least) if braked else static_loads,
-        max_wheel_load_N=_per_wheel(account.largest) if braked else static_loads,
         static_wheel_load_N=static_loads,
-        mean_total_wheel_load_N=_WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
-        weight_N=_WHOLE * weight,
-        locked_time_s=_per_wheel(account.locked_time),
+        mean_total_wheel_load_N=WHOLE * (account.load_seconds / account.seconds if account.seconds > 0 else weight),
+        weight_N=WHOLE * weight,
+        **_of_wheels(scenario, vehicle, static_loads),
+        unevenness_d1_m=realised_level(scenario.track.unevenness, float(end.q[POSITION])),
         energy_residual=stop.train.largest_residual,
         energy=_final_energy(stop),
         steps=stop.train.steps,
@@ -140,6 +139,20 @@ def _work(stop: ReadyStop) -> dict[str, int]:
 
 def _per_wheel(values: Vector) -> PerWheel:
     return cast(PerWheel, tuple(float(value) for value in values))
+
+
+def _of_wheels(scenario: Scenario, vehicle: Vehicle, static_loads: PerWheel) -> dict[str, Any]:
+    """Extremes of the wheels since the onset; what slide protection counted, summed over the wheelsets."""
+    account, brake, braked = vehicle.account, vehicle.brake, vehicle.brake.breaks > 0
+    protected = scenario.braking.slide_protection is not None
+    return {
+        "min_wheel_load_N": _per_wheel(account.least) if braked else static_loads,
+        "max_wheel_load_N": _per_wheel(account.largest) if braked else static_loads,
+        "locked_time_s": _per_wheel(account.locked_time),
+        "brake_torque_max_N_m": _per_wheel(account.largest_torque),
+        "slide_protection_cycles": float(brake.vents.sum()) if protected else None,
+        "slide_protection_air": float(brake.air.sum()) if protected else None,
+    }
 
 
 def _recommended(scenario: Scenario) -> Recommendation | None:
@@ -181,105 +194,13 @@ def _extent(scenario: Scenario, stop: ReadyStop, run: Run) -> Extent:
 def _final_energy(stop: ReadyStop) -> dict[str, float]:
     """The ledger at the end of the run, J of the whole wagon."""
     account = stop.vehicle.account
-    kinetic, elastic, slosh = _WHOLE * account.energies
-    losses = _WHOLE * account.losses
+    kinetic, elastic, slosh = WHOLE * account.energies
+    losses = WHOLE * account.losses
     return {
-        "initial_kinetic": _WHOLE * stop.train.initial_kinetic,
-        "initial_total": _WHOLE * stop.train.total_start,
+        "initial_kinetic": WHOLE * stop.train.initial_kinetic,
+        "initial_total": WHOLE * stop.train.total_start,
         "kinetic": float(kinetic),
         "elastic": float(elastic),
         "slosh": float(slosh),
-        **{name: float(losses[place]) for name, place in _LOSSES.items()},
+        **{name: float(losses[place]) for name, place in LOSS_PLACES.items()},
     }
-
-
-_LOSSES = {
-    "brake": BRAKE,
-    "creep": CREEP,
-    "suspension": SUSPENSION,
-    "foundation": FOUNDATION,
-    "resistance": RESISTANCE,
-    "slosh_damping": SLOSH_DAMPING,
-    "slope_work": SLOPE,
-    "gradient": GRADIENT,
-}
-
-
-def _channels(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str, Vector]:
-    """Histories by channel name, from a vehicle's raw rows."""
-    wagon, columns = vehicle.wagon, columns_of(vehicle)
-    place, speed, acceleration = np.split(rows[:, columns.place : columns.normal], 3, axis=1)
-    channels = {
-        "position": place[:, POSITION],
-        "speed": speed[:, POSITION],
-        "acceleration": acceleration[:, POSITION],
-        "car_acceleration": acceleration @ wagon.car_row,
-        "car_heave": place[:, CAR_HEAVE],
-        "car_pitch": place[:, CAR_PITCH],
-    }
-    for bogie in range(wagon.bogies):
-        channels[f"bogie_{bogie + 1}_heave"] = place[:, FIRST_BOGIE + 2 * bogie]
-        channels[f"bogie_{bogie + 1}_pitch"] = place[:, FIRST_BOGIE + 2 * bogie + 1]
-    train_speed = np.maximum(np.abs(speed[:, POSITION]), CREEPAGE_SPEED_FLOOR)
-    for i in WHEELS:
-        rolling = wagon.wheel_radius * speed[:, wagon.first_spin + i - 1]
-        channels[wheel(i, "heave")] = place[:, wagon.first_wheel + i - 1]
-        channels[wheel(i, "speed")] = rolling
-        channels[wheel(i, "creepage")] = (speed[:, POSITION] - rolling) / train_speed
-        channels[wheel(i, "normal_force")] = rows[:, columns.normal + i - 1]
-        channels[wheel(i, "tangential_force")] = rows[:, columns.creep + i - 1]
-        channels[wheel(i, "brake_torque")] = rows[:, columns.torque + i - 1]
-        channels[wheel(i, "rail_deflection")] = rows[:, columns.rail + i - 1]
-    recorded = rows[:, columns.liquid : columns.end]
-    if isinstance(vehicle.liquid, CellLiquid):
-        channels |= _cell_channels(scenario, recorded, acceleration)
-    else:
-        channels |= _load_channels(scenario, vehicle, recorded, place, acceleration)
-    return channels | _energy_channels(rows, columns)
-
-
-def _load_channels(
-    scenario: Scenario, vehicle: Vehicle, recorded: Matrix, place: Matrix, acceleration: Matrix
-) -> dict[str, Vector]:
-    """The load's force and moment on the whole tank (theory section 3), slosh amplitudes and the surface.
-
-    The force is the derivative of the liquid's momentum, the frozen part included.
-    """
-    load, pitch, turning = frozen_load(scenario.tank), place[:, CAR_PITCH], acceleration[:, CAR_PITCH]
-    centre = acceleration @ vehicle.wagon.tank_row + load.centre_height * turning
-    weight_arm = STANDARD_GRAVITY * load.mass * load.centre_height * pitch
-    channels = {
-        "liquid_force": -load.mass * centre,
-        "liquid_moment": weight_arm - load.mass * load.centre_height * centre - load.pitch_inertia * turning,
-        "surface_front": np.zeros(len(place)),
-        "surface_rear": np.zeros(len(place)),
-    }
-    liquid = vehicle.liquid
-    if not isinstance(liquid, ModalLiquid):
-        return channels
-    amplitude, second = np.split(recorded, 2, axis=1)
-    channels["liquid_force"] -= _WHOLE * second @ liquid.lambda_1
-    channels["liquid_moment"] += _WHOLE * (amplitude @ liquid.pitch_weight - second @ liquid.lambda_02)
-    channels["surface_front"] = amplitude @ liquid.side
-    channels["surface_rear"] = -amplitude @ liquid.side
-    return channels | {slosh_amplitude(n + 1): amplitude[:, n] for n in range(amplitude.shape[1])}
-
-
-def _cell_channels(scenario: Scenario, recorded: Matrix, acceleration: Matrix) -> dict[str, Vector]:
-    """Force and moment of the shallow-water liquid on the whole tank (means over steps), surface at both walls."""
-    return {
-        "liquid_force": _WHOLE * recorded[:, 0],
-        "liquid_moment": _WHOLE * recorded[:, 1]
-        - frozen_load(scenario.tank).pitch_inertia * acceleration[:, CAR_PITCH],
-        "surface_front": recorded[:, 2],
-        "surface_rear": recorded[:, 3],
-    }
-
-
-def _energy_channels(rows: Matrix, columns: Columns) -> dict[str, Vector]:
-    stored = ("energy_kinetic", "energy_elastic", "energy_slosh")
-    channels = {name: _WHOLE * rows[:, columns.energies + k] for k, name in enumerate(stored)}
-    for name, place in _LOSSES.items():
-        channels[f"energy_{name}"] = _WHOLE * rows[:, columns.losses + place]
-    channels["energy_residual"] = rows[:, columns.residual]
-    return channels

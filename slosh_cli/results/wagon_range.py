@@ -12,12 +12,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from slosh_cli.arrays import Vector
-from slosh_cli.results.recommendation import stop_deceleration, total_mass
+from slosh_cli.results.recommendation import stop_deceleration
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario, rail_reach
 from slosh_cli.section import section_of
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.wagon.model import POSITION, wagon_model
+from slosh_cli.wagon.torque import brake_torque, nominal_torque, total_mass
 
 _AXLE_LOAD_LIMIT = 22.5
 """t; line category D (EN 15528), the heaviest that most European lines take."""
@@ -172,7 +173,7 @@ def braked_wheel_loads(scenario: Scenario) -> Vector:
     model = wagon_model(scenario.wagon, tank.bottom_height, frozen_load(tank))
     slowing = stop_deceleration(scenario)
     drive = model.weight + slowing * model.mass[:, POSITION]
-    np.add.at(drive, model.frame, scenario.nominal_torque)
+    np.add.at(drive, model.frame, nominal_torque(scenario))
     free, wheels = np.arange(1, model.first_wheel), np.arange(model.first_wheel, model.first_spin)
     place = np.zeros(model.coordinates)
     place[free] = np.linalg.solve(model.stiffness[np.ix_(free, free)], drive[free])
@@ -182,7 +183,7 @@ def braked_wheel_loads(scenario: Scenario) -> Vector:
 def lock_check(scenario: Scenario) -> Check:
     """Which wheels are bound to lock: their brake asks for more than the rail can give at any slip."""
     given = scenario.contact.adhesion.mu0 * np.maximum(braked_wheel_loads(scenario), 1.0)
-    asked = scenario.brake_torque(0.0) / scenario.wagon.wheelset.wheel_radius
+    asked = brake_torque(scenario, 0.0) / scenario.wagon.wheelset.wheel_radius
     over = ", ".join(f"wheel {i}" for i, force in enumerate(given, 1) if asked > force)
     return Check(
         "brake force over adhesion",

@@ -11,10 +11,11 @@ from slosh_cli.scenario.schema import (
     load_tank_scenario,
     parse_scenario,
 )
+from slosh_cli.scenario.schema_brake import Braking
+from slosh_cli.scenario.schema_line import Dip, Unevenness
 from slosh_cli.scenario.schema_modes import OutlivedCoefficientsError
 from slosh_cli.scenario.schema_run import (
     Adhesion,
-    Braking,
     Contact,
     Domain,
     Foundation,
@@ -38,6 +39,7 @@ from slosh_cli.scenario.schema_wagon import (
     RunningResistance,
     Suspension,
     Wagon,
+    WheelFlat,
     Wheelset,
 )
 from slosh_cli.scenario.units import parse_quantity
@@ -49,6 +51,7 @@ __all__ = [
     "CarBody",
     "Coefficient",
     "Contact",
+    "Dip",
     "Domain",
     "Elliptical",
     "Foundation",
@@ -66,7 +69,9 @@ __all__ = [
     "Tank",
     "TankScenario",
     "Track",
+    "Unevenness",
     "Wagon",
+    "WheelFlat",
     "Wheelset",
     "find_packaged",
     "json_schema",

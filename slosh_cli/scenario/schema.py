@@ -10,12 +10,20 @@ from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.loader import Root, read
 from slosh_cli.scenario.rules import Finding
+<<<<<<< HEAD
 from slosh_cli.scenario.schema_limits import Limits
 from slosh_cli.scenario.schema_modes import with_own_coefficients
 from slosh_cli.scenario.schema_rules import ALONE_RULES, STOP_RULES
 from slosh_cli.scenario.schema_run import Braking, Contact, Output, Solver, Track
+=======
+from slosh_cli.scenario.schema_brake import Braking
+from slosh_cli.scenario.schema_modes import with_own_coefficients
+from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
+from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
+>>>>>>> main
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
+from slosh_cli.scenario.tree import value_at
 from slosh_cli.scenario.yaml_text import parse
 
 
@@ -56,15 +64,6 @@ class Scenario(Root):
         vars(self)["tank"] = self.tank.loaded(tare_of(self.wagon))
         return self
 
-    def brake_torque(self, speed: float) -> float:
-        """Torque (N m) of a fully applied wheel that rolls at `speed` (m/s)."""
-        return self.braking.torque_at(speed, self.wagon.wheelset.wheel_radius)
-
-    @property
-    def nominal_torque(self) -> float:
-        """Torque (N m) of a fully applied wheel at the initial speed."""
-        return self.brake_torque(self.braking.initial_speed)
-
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
         return self.model_copy(update={"tank": tank})
@@ -76,7 +75,7 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     `overrides` are texts ``key.path=VALUE`` with VALUE in YAML; all are applied, in order, before anything
     is checked. Raises ScenarioError, which lists every mistake of the file and of the overrides.
     """
-    document = read(path, overrides, _kind)
+    document = _with_files_beside(read(path, overrides, _kind), Path(path))
     if _kind(document.data) is TankScenario:
         rule = f"must describe a stop, with {', '.join(_stop_parts())} beside the tank"
         fix = "add them, or use the file where a tank alone will do"
@@ -100,8 +99,17 @@ def load_tank_scenario(path: str | Path, overrides: Iterable[str] = ()) -> TankS
 
 def load_any_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario | TankScenario:
     """Read a file of either kind: one with any of the wagon's parts is taken for a stop."""
-    document = read(path, overrides, _kind)
+    document = _with_files_beside(read(path, overrides, _kind), Path(path))
     return _kind(document.data).of(document, str(path))
+
+
+def _with_files_beside(document: Document, path: Path) -> Document:
+    """The document with files that it names found from its own folder, those of overrides from where one is."""
+    place = ("track", "unevenness", "file")
+    name = value_at(document.data, place)
+    if isinstance(name, str) and not name.startswith("x_m,z_m ") and not document.origin(place).override:
+        document.data["track"]["unevenness"]["file"] = str(path.parent / name)
+    return document
 
 
 def parse_scenario(text: str, name: str = "scenario") -> Scenario:

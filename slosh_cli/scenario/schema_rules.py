@@ -9,6 +9,7 @@ from typing import Final
 from slosh_cli.scenario import rail_reach
 from slosh_cli.scenario.amounts import fits_tank, no_wagon
 from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.schema_line import SMOOTH_START
 from slosh_cli.scenario.schema_run import Foundation, Rail
 from slosh_cli.scenario.units import STANDARD_GRAVITY, at_least, at_most, shown
 
@@ -120,6 +121,18 @@ def _braking(v: Values) -> Iterator[Finding]:
         yield _finding(onset, rule, f"`{shown(v[onset])} s`", "write an earlier onset or a later `solver.time_limit`")
 
 
+def _dips_ahead(v: Values) -> Iterator[Finding]:
+    """Unevenness sets in over the first metres: a dip there would be less deep than it is written."""
+    if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing"):
+        return
+    least = SMOOTH_START + 0.5 * (v["wagon.bogie.wheelbase"] + v["wagon.pivot_spacing"])
+    for number, dip in enumerate(v.get("track.unevenness.dips") or ()):
+        if dip.position < least:
+            path = ("track", "unevenness", "dips", number, "position")
+            rule = f"must be {at_least(least)} m or more, since unevenness sets in over the first {SMOOTH_START:g} m"
+            yield Finding(path, rule, _metres(dip.position), f"write `{at_least(least)} m` or more")
+
+
 def _rows(v: Values) -> Iterator[Finding]:
     interval, limit = "output.interval", "solver.time_limit"
     if v.has(interval, limit) and v[interval] < v[limit] / _MOST_ROWS:
@@ -223,5 +236,6 @@ STOP_RULES: Final = (
     _elements,
     _braking,
     _rows,
+    _dips_ahead,
     _tank_on_wagon,
 )

@@ -1,4 +1,4 @@
-"""Track, contact, braking, solver and output: everything of a stop that is neither wagon nor tank."""
+"""Track, contact, solver and output of a stop."""
 
 from collections.abc import Iterator
 from typing import Annotated, Final
@@ -8,6 +8,7 @@ from pydantic import Field
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Number, Quantity, Range
 from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.schema_line import GradientProfile, Unevenness
 from slosh_cli.scenario.short import Short
 from slosh_cli.scenario.units import at_most, shown
 
@@ -64,9 +65,19 @@ class Track(Part):
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
     domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")
-    gradient: Annotated[float, Number(Range(-0.1, 0.1), "0.010")] = Field(
-        default=0.0, description="Rise per length of track, uphill in the direction of travel positive."
+    gradient: Annotated[float | tuple[tuple[float, float], ...], GradientProfile()] = Field(
+        default=0.0,
+        description="Rise per length of track, uphill in the direction of travel positive; or points [position, "
+        "gradient], linear between them and constant beyond.",
     )
+    unevenness: Unevenness | None = Field(
+        default=None, description="How the unloaded rail deviates from a straight line. Default: not at all."
+    )
+
+    @property
+    def gradient_points(self) -> tuple[tuple[float, float], ...]:
+        """Positions (m) and gradients, linear between them and constant beyond."""
+        return ((0.0, self.gradient),) if isinstance(self.gradient, float) else self.gradient
 
 
 _FRICTION: Final = Number(Range(0.005, 1.5), "0.55")
@@ -140,27 +151,6 @@ class Contact(Part):
         default=None,
         description="Hertzian contact stiffness of one wheel, N/m^1.5, instead of the computed one.",
     )
-
-
-class Braking(Part):
-    """The stop."""
-
-    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
-        description="Speed at the start of the run, m/s."
-    )
-    torque: Annotated[float, Quantity("torque", Range(0.0, 1e6), "5 kN m")] = Field(
-        description="Brake torque per wheel, N m (a wheelset has two wheels)."
-    )
-    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
-        description="When the brakes set in, after the start of the run, s."
-    )
-    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
-        default=0.02, description="The wagon counts as stopped when its speed falls to this, m/s."
-    )
-
-    def torque_at(self, speed: float, wheel_radius: float) -> float:  # noqa: ARG002 - other brakes depend on them
-        """Torque (N m) of a fully applied wheel of `wheel_radius` (m) that rolls at `speed` (m/s)."""
-        return self.torque
 
 
 class Solver(Part):

@@ -1,11 +1,15 @@
 """The wagon: bodies, suspension, running resistance. Values are of the whole wagon unless a text says not."""
 
+import math
+from collections.abc import Collection, Iterator
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
 from slosh_cli.scenario.base import Alias, Aliased, Part
-from slosh_cli.scenario.leaves import Quantity, Range
+from slosh_cli.scenario.leaves import Count, Quantity, Range
+from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.units import at_most, shown
 
 _Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
 _Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
@@ -79,8 +83,39 @@ class RunningResistance(Part):
     )
 
 
+class WheelFlat(Part):
+    """A flat on a wheel: one smooth dip of its tread per turn."""
+
+    wheel: Annotated[int, Count(1, 4)] = Field(description="Number of the wheel, 1 leading to 4 trailing.")
+    depth: Annotated[float, Quantity("length", Range(0.0, 0.02, above=True), "1 mm")] = Field(
+        description="What the flat takes off the wheel's radius in its middle, m."
+    )
+    length: Annotated[float, Quantity("length", Range(0.005, 1.0), "60 mm")] = Field(
+        description="Length of the flat along the tread, m."
+    )
+
+
+def _flats_on_their_wheels(v: Values) -> Iterator[Finding]:
+    """A wheel has one flat, on a quarter of its tread at most."""
+    wheels = [flat.wheel for flat in v.get("wheel_flats", ())]
+    for number, wheel in enumerate(wheels):
+        if wheel in wheels[:number]:
+            rule, given = "must be another wheel for each flat", f"wheel {wheel} again"
+            yield Finding(("wheel_flats", number, "wheel"), rule, given, "keep one of them")
+    if not v.has("wheelset.wheel_radius"):
+        return
+    most = 0.5 * math.pi * v["wheelset.wheel_radius"]
+    for number, flat in enumerate(v.get("wheel_flats", ())):
+        if flat.length > most:
+            rule = f"must be at most a quarter of the wheel's circumference, {at_most(most)} m"
+            given = f"`{shown(flat.length)} m`"
+            yield Finding(("wheel_flats", number, "length"), rule, given, f"write `{at_most(most)} m` or less")
+
+
 class Wagon(Part):
     """A four-axle wagon on two bogies."""
+
+    rules = (_flats_on_their_wheels,)
 
     car_body: CarBody = Field(description="The car body with the empty tank.")
     bogie: Bogie = Field(description="One of the two equal bogie frames.")
@@ -96,3 +131,8 @@ class Wagon(Part):
         description="Between bogie frame and car body: one unit per bogie and side of the wagon."
     )
     running_resistance: RunningResistance = Field(description="Running resistance of the whole wagon.")
+    wheel_flats: tuple[WheelFlat, ...] = Field(default=(), description="Flats on wheels, one per wheel at most.")
+
+    def unwritten(self, *, as_text: bool) -> Collection[str]:  # noqa: ARG002 - the same for both
+        """Flats of round wheels."""
+        return () if self.wheel_flats else ("wheel_flats",)

@@ -55,6 +55,8 @@ class Short(Judge):
         try:
             return self.make(read(value))
         except ValueRefused as refused:
+            if isinstance(value, list | tuple):
+                raise  # meant as what it is: its own rule says more
             fix = refused.fix
             if not isinstance(value, int | float) and not (isinstance(value, str) and value[:1].isdigit()):
                 example = f"something such as `{self.example}` or {in_full}"

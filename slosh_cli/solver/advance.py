@@ -90,8 +90,11 @@ def _next_break(train):
 
 @inner_kernel
 def _pass_breaks(train):
-    """Pass the breaks of the brakes' torques that are due; the first of a brake is its onset."""
-    vehicles = train.vehicles
+    """Pass the breaks of the brakes' torques that are due; the first of a brake is its onset.
+
+    Returns whether a torque has a kink or a jump there.
+    """
+    vehicles, kinks = train.vehicles, False
     for k in range(len(vehicles)):
         vehicle, brake = vehicles[k], vehicles[k].brake
         if train.time < brake.next_break():
@@ -99,8 +102,24 @@ def _pass_breaks(train):
         if not brake.is_on():
             vehicle.account.onset_time = train.time
             vehicle.account.onset_position = vehicle.points[START].q[0]
-        brake.pass_break()
-        let_go(vehicle, train.time)
+        if brake.pass_break(train.time, vehicle.points[START].v, vehicle.wagon.first_spin):
+            let_go(vehicle, train.time)
+            kinks = True
+    return kinks
+
+
+@inner_kernel
+def _resolving_step(vehicle):
+    """Longest step (s) from the start that resolves what the vehicle rolls over: its line, its rails, its flats."""
+    wagon, q, v, surface = vehicle.wagon, vehicle.points[START].q, vehicle.points[START].v, vehicle.contact.surface
+    way = vehicle.line.way_ahead(q[0])
+    if surface.uneven == 0:
+        return way / abs(v[0])
+    step = math.inf
+    for i in range(wagon.wheels):
+        way = min(way, surface.way_ahead(i, q[0]))
+        step = min(step, surface.turning_step(i, q[wagon.first_spin + i], v[wagon.first_spin + i]))
+    return min(step, way / abs(v[0]))
 
 
 @inner_kernel
@@ -112,6 +131,8 @@ def _limited_step(train):
         slowing = max(slowing, abs(vehicles[k].points[START].a[0]))
     if slowing * step > control.most_slowing:
         step = control.most_slowing / slowing
+    for k in range(len(vehicles)):
+        step = min(step, _resolving_step(vehicles[k]))
     until = min(_next_break(train), control.time_limit) - train.time
     if step >= until * (1.0 - 1e-9):
         return until
@@ -231,8 +252,8 @@ def _choose(train, rows):
     if train.time >= train.control.time_limit:
         return TIME_LIMIT
     if train.time >= _next_break(train):
-        _pass_breaks(train)
-        _note_event(train)
+        if _pass_breaks(train):
+            _note_event(train)
         return RUNNING
     step = _limited_step(train)
     if not _has_room(train, rows, step):

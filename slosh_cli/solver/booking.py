@@ -40,6 +40,8 @@ def _settle_extremes(vehicle, step):
         account.largest[i] = max(account.largest[i], high)
         mean = OUTER * (start[i] + middle[i]) + DIAGONAL * end[i]
         account.load_seconds += step * mean
+        turned = max(vehicle.points[START].torque[i], vehicle.points[END].torque[i])
+        account.largest_torque[i] = max(account.largest_torque[i], turned)
         if vehicle.locked[i]:
             account.locked_time[i] += step
     account.seconds += step

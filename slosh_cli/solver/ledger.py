@@ -66,6 +66,7 @@ def _balance_contacts(vehicle, point):
         power[CREEP] += point.creep[i] * (speed - wagon.wheel_radius * spin)
         power[SLOPE] += point.normal[i] * speed * rail[slopes + under[i]]
         heave, angle = q[wagon.first_wheel + i], q[wagon.first_spin + i]
+        power[SLOPE] += point.normal[i] * contact.rising(i, q[0], speed, angle, spin)
         energy += contact.energy(contact.approach(i, rail[under[i]], heave, q[0], angle))
     return energy
 

@@ -13,7 +13,7 @@ from slosh_cli.solver.vehicle import LOSSES, Vehicle
 
 
 class Columns(NamedTuple):
-    """Where the quantities of a row begin: time, coordinates with two derivatives, wheels, energies, the liquid's."""
+    """Where the quantities of a row begin: coordinates with two derivatives, of wheels, brake, energies, liquid."""
 
     place: int
     speed: int
@@ -22,6 +22,9 @@ class Columns(NamedTuple):
     creep: int
     torque: int
     rail: int
+    held_torque: int
+    share: int
+    application: int
     energies: int
     losses: int
     residual: int
@@ -32,7 +35,7 @@ class Columns(NamedTuple):
 def columns_of(vehicle: Vehicle) -> Columns:
     """The columns of a vehicle's rows; the time is in front."""
     wagon = vehicle.wagon
-    sizes = [*3 * [wagon.coordinates], *4 * [wagon.wheels], SLOSH + 1, LOSSES, 1, vehicle.liquid.recorded]
+    sizes = [*3 * [wagon.coordinates], *6 * [wagon.wheels], 1, SLOSH + 1, LOSSES, 1, vehicle.liquid.recorded]
     return Columns(*(1 + int(before) for before in np.cumsum([0, *sizes])))
 
 
@@ -64,7 +67,7 @@ def interpolate(vehicle, row, time, step, part, residual):
     hermites(start.v, start.a, end.v, end.a, cubic, row, 1 + size)
     parabolas(start.a, middle.a, end.a, parabola, row, 1 + 2 * size)
     _interpolate_wheels(vehicle, row, time + part * step, cubic, parabola)
-    first = 1 + 3 * size + 4 * wagon.wheels
+    first = 2 + 3 * size + 6 * wagon.wheels
     before, after = account.energies_before, account.energies
     for k in range(SLOSH + 1):
         row[first + k] = (1.0 - part) * before[k] + part * after[k]
@@ -76,7 +79,7 @@ def interpolate(vehicle, row, time, step, part, residual):
 
 @inner_kernel
 def _interpolate_wheels(vehicle, row, time, cubic, parabola):
-    """Forces, torques and the rail at the wheels; the coordinates are in the `row` already."""
+    """Forces, torques, the rail at the wheels, the application; the coordinates are in the `row` already."""
     start, end, wagon, contact = vehicle.points[START], vehicle.points[END], vehicle.wagon, vehicle.contact
     size, wheels, radius, under = wagon.coordinates, wagon.wheels, wagon.wheel_radius, vehicle.rail.contact
     first, speed = 1 + 3 * size, row[1 + size]
@@ -96,3 +99,6 @@ def _interpolate_wheels(vehicle, row, time, cubic, parabola):
         row[first + wheels + i] = creep
         row[first + 2 * wheels + i] = creep * radius if vehicle.locked[i] else torque
         row[first + 3 * wheels + i] = rail
+        row[first + 4 * wheels + i] = torque
+        row[first + 5 * wheels + i] = vehicle.brake.share(i, time)
+    row[first + 6 * wheels] = vehicle.brake.application(time)

@@ -24,6 +24,7 @@ from slosh_cli.tank.still import shallow_liquid
 from slosh_cli.track.contact import contact_model
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel, critical_speed, rail_model
+from slosh_cli.track.surface import rolling_surface
 from slosh_cli.wagon.brake import brake_of
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION, WagonModel, wagon_model, wheel_positions
 
@@ -86,8 +87,10 @@ def _vehicle(scenario: Scenario) -> Vehicle:
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
     liquid = _liquid(scenario, wagon)
-    rail = _rail(_computed_track(scenario), tuple(wheel_positions(scenario.wagon)))
-    contact = contact_model(scenario.contact, wagon.wheel_radius)
+    ahead = wheel_positions(scenario.wagon)
+    rail = _rail(_computed_track(scenario), tuple(ahead))
+    surface = rolling_surface(scenario.track.unevenness, scenario.wagon.wheel_flats, ahead, wagon.wheel_radius)
+    contact = contact_model(scenario.contact, wagon.wheel_radius, surface)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
     start = initial_point(wagon, rail, contact, scenario.braking.initial_speed)
@@ -104,10 +107,13 @@ def _vehicle(scenario: Scenario) -> Vehicle:
 
 
 def _line(scenario: Scenario) -> Line:
-    resistance, gradient = scenario.wagon.running_resistance, scenario.track.gradient
-    return Line.blank(
+    resistance, points = scenario.wagon.running_resistance, np.array(scenario.track.gradient_points)
+    pulls = 0.0 - STANDARD_GRAVITY * points[:, 1]
+    return Line(
         resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
-        pull=-STANDARD_GRAVITY * gradient if gradient else 0.0,
+        pull=float(pulls[0]),
+        places=points[:, 0].copy(),
+        pulls=pulls,
     )
 
 

@@ -104,7 +104,8 @@ class _Account(Block):
     """What a vehicle sums up over a run, beside what it was before the step in hand.
 
     `energies` (3,) J: kinetic, elastic, gravity's and slosh; `losses` J, in the order of the ledger's. Since its onset,
-    at `onset_time` s and `onset_position` m: `least`, `largest` wheel loads (N) and `locked_time` (s), each (wheels,);
+    at `onset_time` s and `onset_position` m: `least`, `largest` wheel loads (N), `largest_torque` (N m) transmitted and
+    `locked_time` (s), each (wheels,);
     `load_seconds` N s of all wheels in `seconds`. `surface` is the largest rise, m; `lifted` says how often wheels
     lifted off or landed; the rest counts what was computed.
     """
@@ -116,6 +117,7 @@ class _Account(Block):
     locked_time: Vector
     least: Vector
     largest: Vector
+    largest_torque: Vector
     values_before: Vector
     values: Vector
     onset_time: float

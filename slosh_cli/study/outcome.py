@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.errors import SloshError
-from slosh_cli.results.answers import Shown
+from slosh_cli.results.answers import Place, Shown
 from slosh_cli.results.result import Result
 from slosh_cli.study.plan import Stop
 
@@ -59,9 +59,10 @@ def solve(stop: Stop, cancel: Cancel | None = None) -> FinishedStop:
 
 def failed(stop: Stop, reason: str, *, final: bool, seconds: float = 0.0) -> FinishedStop:
     """The outcome of a stop that ended without a result."""
-    given = [one for one in Result.in_table(Shown.STUDY) if one.given]
-    cells = (one.cells(attrgetter(one.given)(stop.scenario)) for one in given)
-    conditions = {column: value for some in cells for column, value in some.items()}
+    conditions: dict[str, Any] = {}
+    for one in Result.in_table(Shown.STUDY, Place.CONDITIONS, Place.CONDITIONS):
+        with suppress(SloshError):  # a brake that tells no torque is why it failed
+            conditions |= one.cells(one.value_in(stop))
     return FinishedStop(stop.index, stop.key, without_result(conditions, reason), final, seconds)
 
 

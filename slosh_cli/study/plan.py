@@ -15,9 +15,11 @@ from slosh_cli.scenario.schema_modes import shapes_modes
 from slosh_cli.scenario.units import plain
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.key import stop_key
+from slosh_cli.wagon.torque import nominal_torque
 
 SPEED: Final = "braking.initial_speed"
 TORQUE: Final = "braking.torque"
+_BRAKING: Final = "braking."
 LIQUID: Final = "tank.liquid.model"
 SOLID: Final = "rigid"
 _COEFFICIENTS: Final = "tank.coefficients"
@@ -87,16 +89,23 @@ class Study:
         return Stop(index, key or stop_key(scenario), scenario, self.histories)
 
     def conditions(self, index: int) -> dict[str, Any]:
-        """Speed in km/h, torque in kN m and model of the load of stop `index`, from its texts alone."""
+        """Speed in km/h, torque in kN m and model of the load of stop `index`, from its texts where they tell."""
         values = self.values(index)
         braking, liquid = self.base.braking, self.base.tank.liquid
         speed = parse_quantity(values[SPEED], "speed") if SPEED in values else braking.initial_speed
-        torque = parse_quantity(values[TORQUE], "torque") if TORQUE in values else self.base.brake_torque(speed)
         return {
             "v0_km_h": _tidy(speed * 3.6),
-            "torque_kN_m": _tidy(torque / 1e3),
+            "torque_kN_m": _tidy(self._torque(index, values) / 1e3),
             "liquid": values.get(LIQUID, str(liquid.model)),
         }
+
+    def _torque(self, index: int, values: dict[str, str]) -> float:
+        """Torque (N m) of a fully applied wheel of stop `index` at its initial speed."""
+        if TORQUE in values:
+            return parse_quantity(values[TORQUE], "torque")
+        if self.base.braking.torque is not None and not any(key.startswith(_BRAKING) for key in {*values} - {SPEED}):
+            return nominal_torque(self.base)
+        return nominal_torque(self.stop(index, "").scenario)
 
     @property
     def liquids(self) -> dict[str, int]:

@@ -16,7 +16,7 @@ from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import fluxes
 
-COURANT = 0.45
+_COURANT = 0.45
 """A step carries no wave further than this part of a cell."""
 _MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
@@ -24,7 +24,7 @@ _SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
 WORK_ROWS = 18
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
-FILM = 1e-4
+_FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
 stays bounded: A. Kurganov and G. Petrova, Comm. Math. Sci. 5 (2007) 133-160, equation 2.17."""
 
@@ -81,7 +81,7 @@ def _calm_films(liquid, area, flow, share):
 
     `share` is the step over the longest one, so that what is taken is a matter of time, not of the number of steps.
     """
-    film = FILM * liquid.table.area[liquid.table.area.size - 1]
+    film = _FILM * liquid.table.area[liquid.table.area.size - 1]
     for i in range(liquid.cells):
         if area[i] < film:
             flow[i] *= (2.0 * area[i] * area[i] / (area[i] * area[i] + film * film)) ** share
@@ -153,7 +153,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
     remaining = duration
     while remaining > 0.0:
         speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
-        limit = _longest_step(liquid, speed, acceleration, COURANT)
+        limit = _longest_step(liquid, speed, acceleration, _COURANT)
         while True:
             if not limit > _SHORTEST_STEP:
                 return False

@@ -13,6 +13,7 @@ from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel, kernel
 from slosh_cli.scenario import Contact
 from slosh_cli.track.hertz import hertz_contact
+from slosh_cli.track.surface import RollingSurface, even_surface
 
 CREEPAGE_SPEED_FLOOR = 0.05
 """Creepage is slip over the larger of train speed and this, m/s (theory section 7)."""
@@ -32,15 +33,31 @@ class ContactModel(Block):
     friction_decay: float
     adhesion_reduction: float
     slip_reduction: float
+    surface: RollingSurface
 
     @inner_kernel
     def approach(self, wheel, rail, heave, place, angle):
         """Approach (m) of a `wheel` at `heave` (m) to the `rail` (m) under it; negative when apart.
 
         The wagon stands at the `place` (m) along the track, the wheel has turned by `angle` (rad): where rails and
-        wheels are even, neither matters.
+        wheels are even, neither matters (theory section 15). In Newton's iteration an approach changes with them a
+        million times less than with the heave, so that they are left out of its slopes, not of its equations.
         """
-        return rail - heave
+        if self.surface.uneven == 0:
+            return rail - heave
+        height, _ = self.surface.rail(wheel, place)
+        flat, _ = self.surface.flat(wheel, angle)
+        return rail + height - heave - flat
+
+    @inner_kernel
+    def rising(self, wheel, place, speed, angle, spin):
+        """Rate (m/s) at which the surfaces bring a wheel and its rail together: speed times the rail's slope, less the
+        spin (rad/s) times that of the flat."""
+        if self.surface.uneven == 0:
+            return 0.0
+        _, slope = self.surface.rail(wheel, place)
+        _, flat_slope = self.surface.flat(wheel, angle)
+        return speed * slope - spin * flat_slope
 
     @kernel
     def normal_force(self, approach):
@@ -86,8 +103,11 @@ class ContactModel(Block):
         return direction * force, direction * by_normal, by_slip, direction * by_speed
 
 
-def contact_model(contact: Contact, wheel_radius: float) -> ContactModel:
-    """Constants of the contact of a wheel of `wheel_radius` (m) under the scenario's materials and adhesion."""
+def contact_model(contact: Contact, wheel_radius: float, surface: RollingSurface | None = None) -> ContactModel:
+    """Constants of the contact of a wheel of `wheel_radius` (m) under the scenario's materials and adhesion.
+
+    Without a `surface` rails and wheels are even.
+    """
     hertz = hertz_contact(wheel_radius, contact.rail_crown_radius, contact.youngs_modulus, contact.poisson_ratio)
     shear_modulus = contact.youngs_modulus / (2 * (1 + contact.poisson_ratio))
     adhesion = contact.adhesion
@@ -99,4 +119,5 @@ def contact_model(contact: Contact, wheel_radius: float) -> ContactModel:
         friction_decay=adhesion.B,
         adhesion_reduction=adhesion.kA,
         slip_reduction=adhesion.kS,
+        surface=even_surface() if surface is None else surface,
     )

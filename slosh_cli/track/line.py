@@ -2,22 +2,46 @@
 
 from __future__ import annotations
 
+import math
+
 from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.vectors import cell_of
+
+_OVERSHOOT = 0.5
+"""m; half of the least distance between two points."""
 
 
 class Line(Block):
     """The running resistance `a + b V + c V^2` of a half vehicle: `resistance` (3,) in N, N s/m and N s^2/m^2; and the
-    `pull` (m/s^2) of gravity along the level track, forward, on every mass."""
+    `pull` (m/s^2) of gravity along the track, forward, on every mass. Where the gradient changes, `pulls` (n,) are
+    those at the `places` (n,) m of the vehicle, linear between them (theory section 14).
+    """
 
     resistance: Vector
     pull: float
+    places: Vector
+    pulls: Vector
 
     @inner_kernel
     def pull_at(self, place):
         """Acceleration (m/s^2) that gravity gives to every mass, forward, where the vehicle stands at a `place` (m)."""
-        return self.pull
+        places, pulls = self.places, self.pulls
+        if places.size < 2:
+            return self.pull
+        cell = cell_of(places, place)
+        part = (place - places[cell]) / (places[cell + 1] - places[cell])
+        return pulls[cell] + min(max(part, 0.0), 1.0) * (pulls[cell + 1] - pulls[cell])
+
+    @inner_kernel
+    def way_ahead(self, place):
+        """Way (m) that a step from a `place` (m) may take: hardly beyond the next point of the gradient's table."""
+        places = self.places
+        if places.size < 2 or place >= places[places.size - 1]:
+            return math.inf
+        following = places[0] if place < places[0] else places[cell_of(places, place) + 1]
+        return following - place + _OVERSHOOT
 
     @inner_kernel
     def resisting_force(self, speed):

@@ -1,36 +1,37 @@
-"""The brake of a vehicle: the torque that each wheel's brake can hold (theory sections 8 and 12).
+"""The brake of a vehicle: the torque that each wheel's brake can hold (theory sections 8, 12 and 13).
 
 A brake is a block with these kernels: `torque(wheel, time, spin)`, the torque (N m) that the brake of a wheel can hold
 or apply at a time (s) and a spin (rad/s), with its derivative by the spin (N m s/rad); `next_break()`, the time (s) of
-the next kink or jump of the torque, where steps end, infinite when there is none; `pass_break()`, which goes beyond
-it; `is_on()`, true from the onset on.
+the next kink or jump of the torque, where steps end, infinite when there is none; `pass_break(time, v, first_spin)`,
+which goes beyond it with the vehicle's velocities `v`, and tells whether the torque has a kink or a jump there;
+`is_on()`, true from the onset on; for the history `application(time)` and `share(wheel, time)`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from slosh_cli.arrays import Array, Vector
+from slosh_cli.arrays import Integers, Matrix, Vector
 from slosh_cli.blocks import Block
-from slosh_cli.compiled import inner_kernel
+from slosh_cli.compiled import inner_kernel, kernel
+from slosh_cli.friction import cast_iron, composite
 from slosh_cli.scenario import Scenario
+from slosh_cli.wagon.torque import changeover_share, constant_torque
 
-CONSTANT, CAST_IRON, COMPOSITE, TABLE = range(4)
-"""Laws of the friction of a brake."""
+if TYPE_CHECKING:
+    from slosh_cli.scenario.schema_application import SlideProtection, Stretches
+
+LAWS = ("table", "cast-iron", "composite")
+"""Laws of friction in the order of a brake's `law`."""
+_TABLE, _CAST_IRON, _COMPOSITE = range(3)
+_cast_iron = inner_kernel(cast_iron)
+_composite = inner_kernel(composite)
+_FILL, _HOLD, _VENT = range(3)  # what slide protection does with a wheel
 _KM_H = 3.6  # of a metre per second
-_REACHED = 0.95  # share of the full force at a filling's `time_95`
-
-
-@inner_kernel
-def _ratio(a, b, c, d, x):
-    """`(a x + b)/(c x + d)` and its derivative by `x`."""
-    below = c * x + d
-    return (a * x + b) / below, (a * d - b * c) / (below * below)
+_STEP = ((0.0, 1.0, 0.0, 0.0, 0.0),)
 
 
 @inner_kernel
@@ -47,12 +48,17 @@ def _between(places, values, x):
 
 
 class Brake(Block):
-    """`count` shoes or friction faces per wheel, each pressed with `force` (N) at full application.
+    """`count` blocks or friction faces per wheel, each pressed with `force` (N) at full application.
 
-    Friction acts at `arm` (m) from the axis; a constant torque is that `count` with a force, an arm and a friction of
-    1. `law` is one of this module's; `speeds` (km/h) and `frictions` (points,) are its table, one point where it is
-    constant. Between `starts` (stretches,) s the application is `base + slope tau + amplitude exp(-rate tau)` with
-    `tau` the time since the stretch's start; `breaks` counts the starts passed, so both sides of a jump are exact.
+    Friction acts at `arm` (m) from the axis of a wheel of `radius` (m); a constant torque is that `count` with a force,
+    an arm and a friction of 1. `law` is a place in `LAWS`; `speeds` (km/h) and `frictions` (points,) are its table, one
+    point where it is constant. Between `starts` (stretches,) s the application is
+    `base + slope tau + amplitude exp(-rate tau)` with `tau` the time since the stretch's start; `breaks` counts the
+    starts passed, so both sides of a jump are exact.
+
+    Slide protection looks at the slip of every wheel each `period` (s), infinite without it, next at `next_sample` (s).
+    Since `sampled` (s) it does with each wheel what its `mode` says, from the share `held` on; `vents` counts how
+    often it began to vent, `air` sums the shares vented (wheels,).
     """
 
     count: float
@@ -68,6 +74,18 @@ class Brake(Block):
     amplitude: Vector
     rate: Vector
     breaks: int
+    period: float
+    hold_above: float
+    vent_above: float
+    release_speed: float
+    fill_time: float
+    vent_time: float
+    next_sample: float
+    sampled: float
+    mode: Integers
+    held: Vector
+    vents: Integers
+    air: Vector
 
     @inner_kernel
     def application(self, time):
@@ -82,39 +100,73 @@ class Brake(Block):
         return share
 
     @inner_kernel
+    def share(self, wheel, time):
+        """The part of it that slide protection leaves to a `wheel` at `time` (s)."""
+        held, mode = self.held[wheel], self.mode[wheel]
+        if mode == _VENT:
+            return held * math.exp((self.sampled - time) / self.vent_time)
+        if mode == _HOLD or held == 1.0:
+            return held
+        return 1.0 - (1.0 - held) * math.exp((self.sampled - time) / self.fill_time)
+
+    @inner_kernel
     def friction(self, speed, force):
         """Friction at a tread's `speed` (m/s) under a `force` (N), and its derivative by the speed (s/m)."""
         v, pressed = max(_KM_H * speed, 0.0), 1e-3 * force
-        if self.law == CAST_IRON:
-            by_speed, slope = _ratio(1.0, 100.0, 5.0, 100.0, v)
-            factor = 0.6 * (1.62 * pressed + 100.0) / (8.1 * pressed + 100.0)
-        elif self.law == COMPOSITE:
-            by_speed, slope = _ratio(1.0, 150.0, 2.0, 150.0, v)
-            factor = 0.44 * (0.1 * pressed + 20.0) / (0.4 * pressed + 20.0)
+        if self.law == _CAST_IRON:
+            value, slope = _cast_iron(v, pressed)
+        elif self.law == _COMPOSITE:
+            value, slope = _composite(v, pressed)
         else:
-            by_speed, slope = _between(self.speeds, self.frictions, v)
-            factor = 1.0
-        return factor * by_speed, factor * slope * _KM_H if speed >= 0.0 else 0.0
+            value, slope = _between(self.speeds, self.frictions, v)
+        return value, _KM_H * slope if speed >= 0.0 else 0.0
 
     @inner_kernel
     def torque(self, wheel, time, spin):
         """Nothing before the onset, then what the friction of the force applied gives."""
         if self.breaks == 0:
             return 0.0, 0.0
-        force = self.application(time) * self.force
-        friction, by_speed = self.friction(self.radius * spin, force)
+        force = self.application(time) * self.share(wheel, time) * self.force
+        value, by_speed = self.friction(self.radius * spin, force)
         pull = self.count * force * self.arm
-        return pull * friction, pull * by_speed * self.radius
+        return pull * value, pull * by_speed * self.radius
 
     @inner_kernel
     def next_break(self):
-        """The start of the next stretch, as long as one is to come."""
-        return self.starts[self.breaks] if self.breaks < len(self.starts) else math.inf
+        """The start of the next stretch or the next look at the slip, whichever is to come first."""
+        start = self.starts[self.breaks] if self.breaks < len(self.starts) else math.inf
+        return min(start, self.next_sample)
 
     @inner_kernel
-    def pass_break(self):
-        """Let the next stretch begin."""
-        self.breaks += 1
+    def pass_break(self, time, v, first_spin):
+        """Let the next stretch begin where it is due, and look at the slip where that is."""
+        kinks = False
+        if self.breaks < len(self.starts) and time >= self.starts[self.breaks]:
+            self.breaks += 1
+            kinks = True
+        if time >= self.next_sample:
+            self.next_sample += self.period
+            kinks = self.sample(time, v, first_spin) or kinks
+        return kinks
+
+    @inner_kernel
+    def sample(self, time, v, first_spin):
+        """Choose what is done with each wheel from now on; whether that is another thing than before for any."""
+        changed, speed = False, v[0]
+        for i in range(len(self.mode)):
+            share, before, mode = self.share(i, time), self.mode[i], _FILL
+            if before == _VENT:
+                self.air[i] += self.held[i] - share
+            self.held[i] = share
+            if speed >= self.release_speed and speed > 0.0:
+                slip = 1.0 - self.radius * v[first_spin + i] / speed
+                mode = _VENT if slip > self.vent_above else _HOLD if slip > self.hold_above else _FILL
+            if mode == _VENT and before != _VENT:
+                self.vents[i] += 1
+            self.mode[i] = mode
+            changed = changed or mode != before
+        self.sampled = time
+        return changed
 
     @inner_kernel
     def is_on(self):
@@ -122,65 +174,55 @@ class Brake(Block):
         return self.breaks > 0
 
 
-@dataclass(frozen=True, eq=False)
-class Application:
-    """The stretches of an application, (stretches,) each: `starts` s from the onset, else as `Brake` has them."""
+@kernel
+def frictions_of(brake: Brake, applied: Vector, shares: Matrix, speeds: Matrix, found: Matrix) -> None:
+    """Friction of each wheel, `found` (rows, wheels), under the parts `applied` (rows,) and `shares` of the force."""
+    for row in range(len(applied)):
+        for i in range(found.shape[1]):
+            force = applied[row] * shares[row, i] * brake.force
+            found[row, i] = brake.friction(speeds[row, i], force)[0]
 
-    starts: Array
-    base: Array
-    slope: Array
-    amplitude: Array
-    rate: Array
 
-    @classmethod
-    def step(cls) -> Application:
-        """All of it at once."""
-        return cls._stretches((0.0, 1.0, 0.0, 0.0, 0.0))
+@kernel
+def holding_torque(brake: Brake, wheel: int, time: float) -> float:
+    """Torque (N m) that the brake of a `wheel` at rest can hold at `time` (s)."""
+    torque: float = brake.torque(wheel, time, 0.0)[0]
+    return torque
 
-    @classmethod
-    def linear(cls, time: float) -> Application:
-        """Evenly within `time` (s)."""
-        return cls.table([(0.0, 0.0), (time, 1.0)])
 
-    @classmethod
-    def filling(cls, time_95: float, delay: float = 0.0, jump: float = 0.1) -> Application:
-        """Nothing for `delay` (s), `jump` at once, then ever slower, with 0.95 at `time_95` (s)."""
-        rate = math.log((1.0 - jump) / (1.0 - _REACHED)) / (time_95 - delay)
-        filled = (delay, 1.0, 0.0, jump - 1.0, rate)
-        return cls._stretches((0.0, 0.0, 0.0, 0.0, 0.0), filled) if delay > 0.0 else cls._stretches(filled)
+def torque_brake(torque: float, onset: float, stretches: Stretches = _STEP, wheels: int = 4, **given: Any) -> Brake:
+    """A brake, not yet applied, that can hold a constant `torque` (N m per wheel) from the `onset` (s) on.
 
-    @classmethod
-    def table(cls, points: list[tuple[float, float]]) -> Application:
-        """Straight lines through points of rising time since the onset (s) and share; constant after the last.
-
-        Before a first point later than the onset nothing is applied.
-        """
-        rows = [
-            (start, share, (after - share) / (end - start), 0.0, 0.0)
-            for (start, share), (end, after) in pairwise(points)
-        ]
-        rows.append((*points[-1], 0.0, 0.0, 0.0))
-        return cls._stretches(*([] if points[0][0] == 0.0 else [(0.0, 0.0, 0.0, 0.0, 0.0)]), *rows)
-
-    @classmethod
-    def _stretches(cls, *rows: tuple[float, float, float, float, float]) -> Application:
-        return cls(*np.array(rows).T)
-
-    def reduced(self, share: float) -> Application:
-        """`share` of this application, as a load changeover leaves to an empty wagon."""
-        return replace(self, base=share * self.base, slope=share * self.slope, amplitude=share * self.amplitude)
-
-    def brake(self, torque: float, onset: float) -> Brake:
-        """The brake that applies a constant `torque` (N m per wheel) so from the `onset` (s) on."""
-        constant: dict[str, Any] = {"law": CONSTANT, "speeds": np.zeros(1), "frictions": np.ones(1)}
-        return Brake(count=torque, force=1.0, arm=1.0, radius=0.0, breaks=0, **constant, **self.fields(onset))
-
-    def fields(self, onset: float) -> dict[str, Any]:
-        """The fields of a brake that sets in at `onset` (s)."""
-        given = {name: getattr(self, name) for name in ("base", "slope", "amplitude", "rate")}
-        return {"starts": onset + self.starts} | given
+    `stretches` say how it builds up; other fields of the brake may be given.
+    """
+    starts, base, slope, amplitude, rate = np.array(stretches).T
+    build_up: dict[str, Any] = {"starts": onset + starts, "base": base, "slope": slope}
+    build_up |= {"amplitude": amplitude, "rate": rate}
+    pressed: dict[str, Any] = {"count": torque, "force": 1.0, "arm": 1.0, "held": np.ones(wheels)}
+    idle: dict[str, Any] = {"speeds": np.zeros(1), "frictions": np.ones(1), "air": np.zeros(wheels)}
+    idle |= {"mode": np.zeros(wheels, np.int64), "vents": np.zeros(wheels, np.int64)}
+    idle |= {"period": math.inf, "next_sample": math.inf}
+    return Brake.blank(**(pressed | idle | build_up | given))
 
 
 def brake_of(scenario: Scenario) -> Brake:
     """The brake of a scenario's wagon, not yet applied."""
-    return Application.step().brake(scenario.brake_torque(0.0), scenario.braking.onset)
+    braking, radius = scenario.braking, scenario.wagon.wheelset.wheel_radius
+    left = changeover_share(scenario)
+    stretches = tuple(
+        (start, left * base, left * slope, left * amplitude, rate)
+        for start, base, slope, amplitude, rate in braking.application.stretches
+    )
+    fields: dict[str, Any] = {"radius": radius, **_protection(braking.slide_protection, braking.onset)}
+    if braking.rubbing is None:
+        return torque_brake(constant_torque(scenario), braking.onset, stretches, **fields)
+    rubbing = braking.rubbing
+    law = rubbing.friction
+    if law.law == "table":
+        fields |= {"speeds": _KM_H * np.array(law.points)[:, 0], "frictions": np.array(law.points)[:, 1]}
+    fields |= {"force": rubbing.force, "arm": rubbing.arm(radius), "law": LAWS.index(law.law)}
+    return torque_brake(rubbing.count, braking.onset, stretches, **fields)
+
+
+def _protection(given: SlideProtection | None, onset: float) -> dict[str, float]:
+    return {} if given is None else {**vars(given), "next_sample": onset, "sampled": onset}

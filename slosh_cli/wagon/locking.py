@@ -78,7 +78,8 @@ def wheel_holds(vehicle, wheel, time):
     over = force * wagon.wheel_radius - torque
     if abs(over) > SWITCH_TOLERANCE * torque:
         return over < 0.0
-    rate = by_normal * slope * (point.rail_rate[under] - point.v[heave]) + (by_slip + by_speed) * point.a[0]
+    rising = contact.rising(wheel, q[0], speed, q[wagon.first_spin + wheel], 0.0)
+    rate = by_normal * slope * (point.rail_rate[under] + rising - point.v[heave]) + (by_slip + by_speed) * point.a[0]
     return rate * wagon.wheel_radius <= (later - torque) / _RATE_OVER
 
 

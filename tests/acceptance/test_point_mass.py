@@ -48,7 +48,7 @@ def creepage(force, kalker):
 def closed_form(V0, torque, kalker):
     """Braking distance (m) and time (s), from numbers written down here."""
     wagon = PointWagon(MASS, ROTATING, RADIUS, (851, 13.5, 1.244))
-    return stopping(wagon, V0, torque, ONSET, STOP_SPEED, creepage(torque / RADIUS, kalker))
+    return stopping(wagon, V0, lambda _: torque, ONSET, STOP_SPEED, creepage(torque / RADIUS, kalker))
 
 
 @pytest.mark.parametrize("torque", [2.5, 5.0, 10.0])

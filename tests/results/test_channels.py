@@ -15,6 +15,7 @@ NAMED = [
     "bogie_1_pitch",
     "bogie_2_heave",
     "bogie_2_pitch",
+    "brake_application",
     "liquid_force",
     "liquid_moment",
     "surface_front",
@@ -40,6 +41,7 @@ PER_WHEEL = [
     "tangential_force",
     "brake_torque",
     "rail_deflection",
+    "held_torque",
 ]
 
 

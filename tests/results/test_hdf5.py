@@ -103,7 +103,7 @@ def test_summary_values_are_in_the_file(result: Result, file: Path) -> None:
     found = read_history(file).attributes
     for key, value in result.summary().items():
         if key != "warnings":
-            np.testing.assert_array_equal(found[key], value, err_msg=key)
+            np.testing.assert_array_equal(found[key], np.nan if value is None else value, err_msg=key)
 
 
 def test_a_history_survives_pickling(file: Path) -> None:

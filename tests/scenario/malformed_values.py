@@ -48,7 +48,8 @@ UNKNOWN_KEYS = (
         "key without any likeness", "  onset: 0.5 s", "  onset: 0.5 s\n  colour: red",
         (
             48, "braking.colour", "is not a key of `braking`", "`colour`",
-            "the keys here are initial_speed, torque, onset and stop_speed",
+            "the keys here are initial_speed, torque, blocks, discs, deceleration, braked_weight, application, "
+            "load_changeover, slide_protection, onset and stop_speed",
         ),
     ),
     one(

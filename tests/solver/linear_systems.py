@@ -17,7 +17,7 @@ from slosh_cli.solver.setup import problem
 from slosh_cli.solver.train import new_train
 from slosh_cli.solver.vehicle import new_point, new_vehicle
 from slosh_cli.tank.modal import ModalLiquid
-from slosh_cli.wagon.brake import Application
+from slosh_cli.wagon.brake import torque_brake
 
 COORDINATES = 15
 CRUISE = 20.0
@@ -100,7 +100,7 @@ def linear_stop(stop, step, end):
         stop,
         contact=vehicle.contact.replaced(stiffness=0.0),
         line=vehicle.line.replaced(resistance=np.zeros(3)),
-        brake=Application.step().brake(0.0, np.inf),
+        brake=torque_brake(0.0, np.inf),
     )
     return replace(stop, train=stop.train.replaced(control=control))
 

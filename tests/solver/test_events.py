@@ -136,8 +136,17 @@ class Ramp(Block):
         return np.inf
 
     @kernel
-    def pass_break(self):
+    def pass_break(self, time, v, first_spin):
         self.breaks += 1
+        return True
+
+    @kernel
+    def application(self, time):
+        return 1.0
+
+    @kernel
+    def share(self, wheel, time):
+        return 1.0
 
     @kernel
     def is_on(self):
@@ -207,8 +216,17 @@ class Switch(Block):
         return self.change if self.breaks < 2 else np.inf
 
     @kernel
-    def pass_break(self):
+    def pass_break(self, time, v, first_spin):
         self.breaks += 1
+        return True
+
+    @kernel
+    def application(self, time):
+        return 1.0
+
+    @kernel
+    def share(self, wheel, time):
+        return 1.0
 
     @kernel
     def is_on(self):

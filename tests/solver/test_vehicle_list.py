@@ -16,6 +16,7 @@ from slosh_cli.solver.stage import prepare_stage, solve_stage
 from slosh_cli.solver.train import new_train
 from slosh_cli.solver.vehicle import Scales, new_vehicle
 from slosh_cli.track.mem import rail_model
+from slosh_cli.wagon.brake import torque_brake
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, WagonModel
 
 G = 9.81
@@ -185,7 +186,8 @@ def test_a_vehicle_of_eight_wheels_stops_as_a_point_mass(shipped):
     start = initial_point(wagon, rail, old.contact, speed)
     assert start.normal.sum() == pytest.approx(G * wagon.mass[0, 0], rel=1e-9)
     scales = Scales(speed=np.full(wagon.coordinates, speed), place=np.ones(wagon.coordinates), slosh=1.0, load=25e3)
-    vehicle = new_vehicle(wagon, old.liquid, rail, old.contact, old.line, old.brake, scales, start)
+    brake = torque_brake(old.brake.count, old.brake.starts[0], wheels=8)
+    vehicle = new_vehicle(wagon, old.liquid, rail, old.contact, old.line, brake, scales, start)
     train = new_train((vehicle,), stop.train.control, 1e-3)
     rows = run(train)
     inertia = wagon.mass[0, 0] + 8 * 60.0 / 0.46**2

@@ -145,7 +145,95 @@ SABOTAGES: dict[str, Sabotage] = {
         "distance",
     ),
     "point_mass_resistance": edit(
-        "point-mass", "solver.setup", "_vehicle", "resistance=HALF *", "resistance=1.0 *", "distance"
+        "point-mass", "solver.setup", "_line", "resistance=HALF *", "resistance=1.0 *", "distance"
+    ),
+    "gradient_sign": edit(
+        "gradient", "solver.setup", "_line", "0.0 - STANDARD_GRAVITY *", "STANDARD_GRAVITY *", "distance on 30 permille"
+    ),
+    "gradient_profile": edit(
+        "gradient", "solver.setup", "_line", "points[:, 0].copy()", "points[:1, 0].copy()", "profile"
+    ),
+    "gradient_liquid": edit(
+        "gradient", "solver.stage", "read_ride", "acceleration - ride.pull[stage]", "acceleration", "surface", copy=True
+    ),
+    "uneven_rail_lines": edit(
+        "uneven-rail",
+        "track.spectrum",
+        "spectral_lines",
+        "number = low + spacing * (np.arange(unevenness.lines, dtype=np.float64) + 0.5)",
+        "spacing = (high - low) / max(unevenness.lines - 1, 1); number = np.linspace(low, high, unevenness.lines)",
+        "variance",
+    ),
+    "uneven_rail_sides": edit(
+        "uneven-rail", "track.spectrum", "spectral_lines", "np.sqrt(2.0 * scale", "np.sqrt(scale", "variance"
+    ),
+    "uneven_rail_level": edit(
+        "uneven-rail",
+        "track.spectrum",
+        "_density",
+        "form.level *",
+        "(1 + 3 * (form.lower == 0)) * form.level *",
+        "fra-6",
+    ),
+    "uneven_rail_height": edit(
+        "uneven-rail",
+        "track.contact",
+        "ContactModel.approach",
+        "rail + height - heave",
+        "rail - height - heave",
+        "in phase",
+        copy=True,
+    ),
+    "wheel_flat_wheel": edit(
+        "wheel-flat", "track.surface", "rolling_surface", "flat.wheel - 1", "flat.wheel - 2", "let down"
+    ),
+    "wheel_flat_length": edit(
+        "wheel-flat",
+        "track.surface",
+        "rolling_surface",
+        "flat.length / wheel_radius",
+        "2 * flat.length / wheel_radius",
+        "let down",
+    ),
+    "wheel_flat_turn": edit(
+        "wheel-flat",
+        "track.surface",
+        "RollingSurface.flat",
+        "angle - 2.0 * math.pi * math.floor",
+        "angle - 0.0 * math.pi * math.floor",
+        "blows",
+        copy=True,
+    ),
+    "brakes_cast_iron": edit(
+        "brakes", "friction", "cast_iron", "5.0 * speed", "4.0 * speed", "blocks, cast iron", copy=True
+    ),
+    "brakes_build_up": edit(
+        "brakes",
+        "scenario.schema_application",
+        "LinearApplication.stretches",
+        "1.0 / self.time",
+        "0.9 / self.time",
+        "built up in 4 s: longer by",
+        copy=True,
+    ),
+    "brakes_braked_weight": edit(
+        "brakes",
+        "wagon.torque",
+        "constant_torque",
+        "_braking_force(moved_mass(scenario)",
+        "_braking_force(total_mass(scenario)",
+        "braked weight 65 %",
+    ),
+    "stopping_table_gradient": edit(
+        "stopping-table", "solver.setup", "_line", "pull=-STANDARD", "pull=STANDARD", "1 in 100 up"
+    ),
+    "stopping_table_deceleration": edit(
+        "stopping-table",
+        "wagon.torque",
+        "constant_torque",
+        "braking.deceleration * moved_mass",
+        "braking.deceleration * total_mass",
+        "level / m",
     ),
     "momentum_reaction": edit(
         "momentum",

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from slosh_cli.validation.exact import exudyn_bodies
 from slosh_cli.validation.exact.fixed_rail import element_matrices, fixed_rail, roll
 from slosh_cli.validation.exact.quadrature import integral
 from slosh_cli.validation.exact.steady_rail import Beam, closed_form, fourier_integral
@@ -48,3 +49,24 @@ def test_integral_of_a_jump():
     values = np.where(time < 0.5, time, 3.0 - time)
     assert integral(time, values, 0.5) == pytest.approx(0.125 + 4.5 - 1.875, rel=1e-12)
     assert np.trapezoid(values, time) != pytest.approx(0.125 + 4.5 - 1.875, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        "torque: 5 kN m, application: {form: linear, time: 4 s}",
+        "torque: 5 kN m, application: P",
+        "torque: 5 kN m, slide_protection: {}",
+        "blocks: {count: 2, force: 25 kN, friction: 0.27}",
+    ],
+)
+def test_the_second_code_refuses_brakes_that_it_does_not_know(shipped, keys):
+    case = shipped("paper_80", f"braking={{initial_speed: 80 km/h, onset: 0.5 s, {keys}}}")
+    with pytest.raises(ValueError, match="constant torque applied at once"):
+        exudyn_bodies.WheelContact(case)
+
+
+def test_the_second_code_refuses_a_gradient_and_takes_the_wagon_of_the_paper(shipped):
+    exudyn_bodies.WheelContact(shipped("paper_80"))
+    with pytest.raises(ValueError, match="the line must be level"):
+        exudyn_bodies.WheelContact(shipped("paper_80", "track.gradient=0.01"))

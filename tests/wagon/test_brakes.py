@@ -8,11 +8,17 @@ from scipy.integrate import quad
 
 from slosh_cli.compiled import kernel
 from slosh_cli.method import START
+from slosh_cli.scenario.schema_application import (
+    FillingApplication,
+    LinearApplication,
+    StepApplication,
+    TableApplication,
+)
 from slosh_cli.solver import advance as loop
 from slosh_cli.solver.record import columns_of
 from slosh_cli.solver.setup import problem
 from slosh_cli.validation.exact.wagon import point_wagon
-from slosh_cli.wagon.brake import CAST_IRON, COMPOSITE, CONSTANT, TABLE, Application, Brake
+from slosh_cli.wagon.brake import LAWS, torque_brake
 from tests.solver.linear_systems import with_parts
 
 STIFF = (
@@ -47,16 +53,18 @@ def share_at(brake, time):
     return brake.application(time)
 
 
-def rubbing(law=CONSTANT, speeds=(0.0,), frictions=(0.3,), force=30e3, application=None, onset=0.1):
+TABLE, CAST_IRON, COMPOSITE = range(len(LAWS))
+
+
+def rubbing(law=TABLE, speeds=(0.0,), frictions=(0.3,), force=30e3, onset=0.1):
     """Two blocks per wheel."""
-    given = (application or Application.step()).fields(onset)
     table = {"speeds": np.array(speeds), "frictions": np.array(frictions)}
-    return Brake(count=2.0, force=force, arm=0.46, radius=0.46, law=law, **table, breaks=0, **given)
+    return torque_brake(2.0, onset, force=force, arm=0.46, radius=0.46, law=law, **table)
 
 
 def shares(application, times):
     """The application at rising times, each break passed when it is due."""
-    brake, found = application.brake(1.0, 0.0), []
+    brake, found = torque_brake(1.0, 0.0, application.stretches), []
     for time in times:
         while brake.breaks < len(brake.starts) and brake.starts[brake.breaks] <= time:
             brake.breaks += 1
@@ -91,10 +99,10 @@ def test_mean_of_cast_iron_over_the_distance():
     assert start**2 / 2 / way == pytest.approx(0.1191, abs=5e-5)
 
 
-@pytest.mark.parametrize("law", [CONSTANT, CAST_IRON, COMPOSITE, TABLE])
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("spin", [-1.0, 3.0, 30.0, 80.0])
 def test_slope_of_the_torque_over_spin(law, spin):
-    brake = rubbing(law, (0.0, 40.0, 100.0), (0.4, 0.3, 0.1)) if law == TABLE else rubbing(law)
+    brake = rubbing(LAWS.index(law), (0.0, 40.0, 100.0), (0.4, 0.3, 0.1))
     brake.breaks = 1
     above, below = (torque_at(brake, 1.0, spin + step)[0] for step in (1e-4, -1e-4))
     assert torque_at(brake, 1.0, spin)[1] == pytest.approx((above - below) / 2e-4, rel=1e-6, abs=1e-6)
@@ -107,18 +115,17 @@ def test_friction_table_is_straight_between_points_and_constant_beyond():
 
 
 def test_applications():
-    assert shares(Application.step(), [-1.0, 0.0, 9.0]) == [0.0, 1.0, 1.0]
-    assert shares(Application.linear(4.0), [0.0, 1.0, 4.0, 9.0]) == pytest.approx([0.0, 0.25, 1.0, 1.0])
-    assert shares(Application.filling(4.0), [0.0, 4.0, 1e3]) == pytest.approx([0.1, 0.95, 1.0])
-    late = Application.filling(4.0, delay=1.0, jump=0.2)
+    assert shares(StepApplication(), [-1.0, 0.0, 9.0]) == [0.0, 1.0, 1.0]
+    assert shares(LinearApplication(time=4.0), [0.0, 1.0, 4.0, 9.0]) == pytest.approx([0.0, 0.25, 1.0, 1.0])
+    assert shares(FillingApplication(time_95=4.0), [0.0, 4.0, 1e3]) == pytest.approx([0.1, 0.95, 1.0])
+    late = FillingApplication(time_95=4.0, delay=1.0, jump=0.2)
     rate = math.log(0.8 / 0.05) / 3.0
     assert shares(late, [0.0, 0.99, 1.0, 2.0, 4.0]) == pytest.approx([0.0, 0.0, 0.2, 1 - 0.8 * math.exp(-rate), 0.95])
-    falling = Application.table([(1.0, 0.3), (2.0, 0.9), (4.0, 0.1)])
-    assert shares(falling, [0.5, 1.0, 1.5, 3.0, 4.0, 9.0]) == pytest.approx([0.0, 0.3, 0.6, 0.5, 0.1, 0.1])
-    assert shares(falling.reduced(0.58), [1.0, 3.0]) == pytest.approx([0.58 * 0.3, 0.58 * 0.5])
+    falling = TableApplication(points=[(0.0, 0.3), (2.0, 0.9), (4.0, 0.1)])
+    assert shares(falling, [0.0, 1.0, 3.0, 4.0, 9.0]) == pytest.approx([0.3, 0.6, 0.5, 0.1, 0.1])
 
 
-EXACT = [(CONSTANT, (0.0,), (0.2,)), (CAST_IRON, (), ()), (COMPOSITE, (), ()), (TABLE, (0.0, 100.0), (0.25, 0.15))]
+EXACT = [(TABLE, (0.0,), (0.2,)), (CAST_IRON, (), ()), (COMPOSITE, (), ()), (TABLE, (0.0, 100.0), (0.25, 0.15))]
 
 
 @pytest.mark.parametrize(("law", "speeds", "frictions"), EXACT, ids=["constant", "cast iron", "composite", "table"])
@@ -153,8 +160,8 @@ def test_linear_application_lengthens_the_stop_as_in_closed_form(shipped):
     case = shipped("paper_80_solid", *STIFF, *STIFF_WAGON, *free)
     wagon, torque, tau = point_wagon(case), 4e3, 4.0
     slowing = 8 * torque / wagon.wheel_radius / (wagon.mass + wagon.rotating_mass)
-    step, _ = stop_with(case, Application.step().brake(torque, 0.1))
-    built_up, _ = stop_with(case, Application.linear(tau).brake(torque, 0.1))
+    step, _ = stop_with(case, torque_brake(torque, 0.1))
+    built_up, _ = stop_with(case, torque_brake(torque, 0.1, LinearApplication(time=tau).stretches))
     longer = 100 / 3.6 * tau / 2 - slowing * tau**2 / 24
     assert built_up - step == pytest.approx(longer, rel=1e-3)
 
@@ -164,7 +171,7 @@ def test_cast_iron_locks_wheels_at_the_end_and_a_falling_table_releases_them(shi
     _, vehicle = stop_with(case, rubbing(CAST_IRON, force=30e3))
     assert vehicle.locked.any()
     assert vehicle.account.locked_time.max() < 10.0
-    falling = Application.table([(0.0, 1.0), (3.0, 1.0), (4.0, 0.1)])
-    _, freed = stop_with(case, falling.brake(12e3, 0.1))
+    falling = TableApplication(points=[(0.0, 1.0), (3.0, 1.0), (4.0, 0.1)])
+    _, freed = stop_with(case, torque_brake(12e3, 0.1, falling.stretches))
     assert not freed.locked.any()
     assert freed.account.locked_time.max() > 1.0

@@ -13,6 +13,7 @@ from slosh_cli.validation.data_file import CaseData
 from slosh_cli.validation.exact.creep import ellipse
 from slosh_cli.validation.exact.wagon import PointWagon, point_wagon, stopping
 from slosh_cli.validation.runs import distance, scenario, stop
+from slosh_cli.wagon.torque import brake_torque
 
 
 def compute(data: CaseData) -> Outcome:
@@ -40,9 +41,9 @@ def compute(data: CaseData) -> Outcome:
 
 
 def _expected(case: Scenario) -> tuple[float, float]:
-    wagon, braking = point_wagon(case), case.braking
-    nu = _creepage(case, wagon, case.brake_torque(0.0) / wagon.wheel_radius)
-    return stopping(wagon, braking.initial_speed, case.brake_torque(0.0), braking.onset, braking.stop_speed, nu)
+    wagon, braking, torque = point_wagon(case), case.braking, brake_torque(case, 0.0)
+    nu = _creepage(case, wagon, torque / wagon.wheel_radius)
+    return stopping(wagon, braking.initial_speed, lambda _: torque, braking.onset, braking.stop_speed, nu)
 
 
 def _creepage(case: Scenario, wagon: PointWagon, force: float) -> float:

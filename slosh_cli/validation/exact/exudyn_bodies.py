@@ -13,6 +13,7 @@ from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.validation.exact.creep import PolachParameters, adhesion, ellipse
+from slosh_cli.wagon.torque import brake_torque
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,13 @@ class Bodies:
 
 
 class WheelContact:
-    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation)."""
+    """Hertz and Polach on a rigid rail, resistance and brake, as generalised forces on one wheel (x, y, rotation).
+
+    Raises ValueError for a brake that builds up or fades and for a gradient: the second code would leave them out.
+    """
 
     def __init__(self, scenario: Scenario) -> None:
+        _refuse_what_is_left_out(scenario)
         steel, p = scenario.contact, scenario.contact.adhesion
         self.radius = scenario.wagon.wheelset.wheel_radius
         a, b, approach = ellipse(self.radius, steel.rail_crown_radius, steel.youngs_modulus, steel.poisson_ratio, 1.0)
@@ -62,7 +67,7 @@ class WheelContact:
         self.gradient = shear * np.pi * a * b * steel.kalker_c11 / 4  # times N^(-1/3)
         self.adhesion = PolachParameters(p.kA, p.kS, p.mu0, p.A, p.B)
         self.resistance = scenario.wagon.running_resistance
-        self.torque, self.onset = scenario.brake_torque(0.0), scenario.braking.onset
+        self.torque, self.onset = brake_torque(scenario, 0.0), scenario.braking.onset
 
     def braking(self, time: float) -> float:
         """Torque on the wheel, N m; the stop is over before a wheel locks.
@@ -85,6 +90,16 @@ class WheelContact:
         terms = self.resistance
         rolling = (terms.constant + terms.linear * rate[0] + terms.quadratic * rate[0] ** 2) / 8
         return np.array([-creep - rolling, normal, self.braking(time) - creep * self.radius])
+
+
+def _refuse_what_is_left_out(scenario: Scenario) -> None:
+    braking = scenario.braking
+    at_once = braking.application.stretches == ((0.0, 1.0, 0.0, 0.0, 0.0),)
+    if not at_once or braking.rubbing is not None or braking.slide_protection is not None:
+        raise ValueError("the brake must be a constant torque applied at once: the second code knows no other")
+    track = scenario.track
+    if any(gradient for _, gradient in track.gradient_points) or track.unevenness or scenario.wagon.wheel_flats:
+        raise ValueError("the line must be level, rails and wheels even: the second code knows no others")
 
 
 def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[float, float, float]:

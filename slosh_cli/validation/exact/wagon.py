@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,9 +57,9 @@ def point_wagon(scenario: Scenario) -> PointWagon:
 
 
 def stopping(
-    wagon: PointWagon, speed: float, torque: float, onset: float, stop: float, creepage: float
+    wagon: PointWagon, speed: float, torque: Callable[[float], float], onset: float, stop: float, creepage: float
 ) -> tuple[float, float]:
-    """Braking distance (m) and time (s) from the onset, by quadrature.
+    """Braking distance (m) and time (s) from the onset, by quadrature; `torque` (N m) of a wheel at a speed (m/s).
 
     `(m + m_rot (1 - nu)) dV/dt = -(8 T/R + a + b V + c V^2)` with the creepage nu of braked wheels; at the onset the
     wheels give up `nu m_rot V` of their momentum. Before it only resistance acts, for `onset` s.
@@ -77,7 +78,7 @@ def stopping(
     moving = wagon.mass + (1 - creepage) * wagon.rotating_mass
 
     def slowing(v: float) -> float:
-        return moving / (8 * torque / wagon.wheel_radius + wagon.resistance(v))
+        return moving / (8 * torque(v) / wagon.wheel_radius + wagon.resistance(v))
 
     distance = quad(lambda v: v * slowing(v), stop, v, epsrel=1e-12)[0]
     return float(distance), float(quad(slowing, stop, v, epsrel=1e-12)[0])

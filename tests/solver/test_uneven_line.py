@@ -1,0 +1,71 @@
+"""Stops on gradients, uneven rails and flats: the ledger closes, steps resolve, and an even line changes no digit."""
+
+import numpy as np
+import pytest
+
+from slosh_cli.results.simulate import simulate
+
+FAST = "braking.initial_speed=100 km/h"
+LINES = {
+    "gradient": ("track.gradient=-5 permille",),
+    "profile": ("track.gradient=[[0 m, 0], [100 m, 0.02], [120 m, -0.02]]",),
+    "dips": ("track.unevenness={dips: [{position: 50 m, length: 1 m, depth: 2 mm}]}",),
+    "level": ("track.unevenness={sigma: 1.2 mm, seed: 1}",),
+    "spectrum": ("track.unevenness={spectrum: fra-4, seed: 1}",),
+    "flat": ("wagon.wheel_flats=[{wheel: 4, depth: 0.5 mm, length: 60 mm}]", "braking.initial_speed=30 km/h"),
+    "all": (
+        "track.gradient=[[0 m, 0], [30 m, -0.01]]",
+        "track.unevenness={spectrum: erri-low, seed: 2}",
+        "wagon.wheel_flats=[{wheel: 1, depth: 0.3 mm, length: 60 mm}]",
+        "braking.initial_speed=30 km/h",
+    ),
+}
+
+
+@pytest.mark.parametrize("line", LINES)
+@pytest.mark.parametrize("name", ["paper_80_solid", "paper_80"])
+def test_the_ledger_closes(stop, name, line):
+    result = stop(name, FAST, *LINES[line])
+    assert result.status == "stopped"
+    assert result.energy_residual < 1e-4
+    assert result.mean_total_wheel_load_N / result.weight_N == pytest.approx(1.0, abs=3e-4)
+
+
+def test_uneven_rails_hardly_move_the_distance_but_the_loads(stop):
+    even, uneven = stop("paper_80_solid", FAST), stop("paper_80_solid", FAST, *LINES["level"])
+    assert uneven.braking_distance_m == pytest.approx(even.braking_distance_m, rel=1e-5)
+    assert min(uneven.min_wheel_load_N) < min(even.min_wheel_load_N) - 3e3
+
+
+def test_no_step_of_an_uneven_rail_takes_a_wheel_past_a_tenth_of_its_waves(stop):
+    even, uneven = stop("paper_80_solid", FAST), stop("paper_80_solid", FAST, *LINES["level"])
+    way = uneven.braking_distance_m + 0.5 * 100 / 3.6
+    assert uneven.steps >= way / 0.15
+    assert even.steps < 400
+    assert uneven.solve_seconds < 0.5
+
+
+def test_steps_follow_a_flat_closely(shipped):
+    few = ("solver.time_limit=1 s", "braking.onset=0 s")
+    flat = simulate(shipped("paper_80_solid", FAST, *few, "wagon.wheel_flats=[{wheel: 4, depth: 1 mm, length: 60 mm}]"))
+    turns = 27.0 / (2 * np.pi * 0.46)
+    fine = 3 * 0.06 / 27.0 / 5e-5  # steps of 0.05 ms over the flat and twice its length behind it
+    assert flat.steps > turns * fine
+    assert flat.max_wheel_load_N[3] > 2 * flat.max_wheel_load_N[0]
+
+
+def test_a_downhill_steeper_than_the_brakes_ends_at_the_time_limit(shipped):
+    result = simulate(
+        shipped("paper_80_solid", "track.gradient=-10 %", "braking.torque=2 kN m", "solver.time_limit=5 s")
+    )
+    assert result.status == "time-limit"
+    assert result.channels["speed"][-1] > result.channels["speed"][0]
+
+
+def test_keys_that_say_nothing_change_no_digit(stop, shipped):
+    plain = stop("paper_80_solid")
+    for words in ("track.unevenness=", "wagon.wheel_flats=[]", "track.gradient=[[0 m, 0]]"):
+        other = simulate(shipped("paper_80_solid", words))
+        assert other.braking_distance_m == plain.braking_distance_m
+        assert other.max_wheel_load_N == plain.max_wheel_load_N
+        assert other.steps == plain.steps
