@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from slosh_cli.arrays import Array
-from slosh_cli.results.recommendation import total_mass
+from slosh_cli.results.line import gradient_at
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
-from slosh_cli.wagon.brake import Brake, brake_of
+from slosh_cli.wagon.torque import brake_torque, moved_mass, total_mass
 
 _WHEELS = 8
 _NODES = 40  # of the quadrature over speed
@@ -19,7 +20,7 @@ _NODES = 40  # of the quadrature over speed
 
 def tau_at(scenario: Scenario, speed: float) -> float:
     """Force of all brakes, fully applied at a `speed` (m/s), over the weight."""
-    force = _WHEELS * scenario.brake_torque(speed) / scenario.wagon.wheelset.wheel_radius
+    force = _WHEELS * brake_torque(scenario, speed) / scenario.wagon.wheelset.wheel_radius
     return force / (total_mass(scenario) * STANDARD_GRAVITY)
 
 
@@ -47,47 +48,53 @@ def point_stop(scenario: Scenario) -> PointStop | None:
     """The stop with running resistance, the brake's build-up and the track's gradient; None where it does not stop."""
     from scipy.integrate import solve_ivp
 
-    brake, braking = brake_of(scenario), scenario.braking
+    braking = scenario.braking
+    starts = [braking.onset + stretch[0] for stretch in braking.application.stretches]
 
     def rates(time: float, state: Array) -> list[float]:
-        return [float(state[1]), -_slowing(scenario, _share(brake, time), float(state[1]))]
+        place, speed = float(state[0]), float(state[1])
+        return [speed, -_slowing(scenario, _applied(scenario, time), place, speed)]
 
     def above(_: float, state: Array) -> float:
         return float(state[1]) - braking.stop_speed
 
     above.terminal = True  # type: ignore[attr-defined]
     state, onset = np.array([0.0, braking.initial_speed]), (0.0, braking.initial_speed)
-    for begin, end in pairwise([0.0, *brake.starts, scenario.solver.time_limit]):
-        if end > begin:
-            if begin >= braking.onset > 0.0 and begin == brake.starts[0]:
-                onset = float(state[0]), float(state[1])
-            inside = end - 1e-12 * end  # the end itself belongs to the next stretch
-            found = solve_ivp(rates, (begin, inside), state, events=above, rtol=1e-9, atol=1e-9, max_step=1.0)
-            state, last = found.y[:, -1], float(found.t[-1])
-            if found.status == 1:
-                distance = float(state[0]) - onset[0]
-                if last <= braking.onset or distance <= 0.0:
-                    return None
-                slowed = (onset[1] ** 2 - float(state[1]) ** 2) / (2.0 * distance)
-                return PointStop(distance, last - braking.onset, slowed)
+    for begin, end in pairwise([0.0, *starts, scenario.solver.time_limit]):
+        if begin == braking.onset:
+            onset = float(state[0]), float(state[1])
+        if end <= begin:
+            continue
+        inside = end - 1e-12 * end  # the end itself belongs to the next stretch
+        found = solve_ivp(rates, (begin, inside), state, events=above, rtol=1e-9, atol=1e-9, max_step=1.0)
+        state = found.y[:, -1]
+        if found.status == 1:
+            return _ended(found.t[-1] - braking.onset, state - np.array([onset[0], 0.0]), onset[1])
     return None
 
 
-def _share(brake: Brake, time: float) -> float:
-    """The application of a brake at a `time` (s)."""
-    k = int(np.searchsorted(brake.starts, time, side="right")) - 1
-    if k < 0:
-        return 0.0
-    since = time - float(brake.starts[k])
-    fading = float(brake.amplitude[k]) * np.exp(-float(brake.rate[k]) * since)
-    return float(brake.base[k] + brake.slope[k] * since + fading)
+def _ended(time: float, state: Array, first: float) -> PointStop | None:
+    """The stop whose `state` is the way and the speed after a `time` (s) from the onset, `first` m/s there."""
+    distance, last = float(state[0]), float(state[1])
+    if time <= 0.0 or distance <= 0.0:
+        return None
+    return PointStop(distance, float(time), (first**2 - last**2) / (2.0 * distance))
 
 
-def _slowing(scenario: Scenario, share: float, speed: float) -> float:
-    """Deceleration (m/s^2) at a `share` of the full application and a `speed` (m/s)."""
+def _applied(scenario: Scenario, time: float) -> float:
+    """The application at a `time` (s), without the load changeover."""
+    share, since = 0.0, time - scenario.braking.onset
+    for start, base, slope, amplitude, rate in scenario.braking.application.stretches:
+        if since >= start:
+            share = base + slope * (since - start) + amplitude * math.exp(-rate * (since - start))
+    return share
+
+
+def _slowing(scenario: Scenario, applied: float, place: float, speed: float) -> float:
+    """Deceleration (m/s^2) with a part of the brake `applied`, at a `place` (m) and a `speed` (m/s)."""
     wagon, mass = scenario.wagon, total_mass(scenario)
     resistance, radius = wagon.running_resistance, wagon.wheelset.wheel_radius
     drag = resistance.constant + resistance.linear * speed + resistance.quadratic * speed**2
-    force = _WHEELS * share * scenario.brake_torque(speed) / radius + drag
-    force += STANDARD_GRAVITY * scenario.track.gradient * mass
-    return float(force / (mass + 4.0 * wagon.wheelset.spin_inertia / radius**2))
+    force = _WHEELS * brake_torque(scenario, speed, applied) / radius + drag
+    force += STANDARD_GRAVITY * gradient_at(scenario, place) * mass
+    return float(force / moved_mass(scenario))

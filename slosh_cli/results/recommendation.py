@@ -14,7 +14,6 @@ from typing import Literal
 
 from slosh_cli.results.liquid_range import FREQUENCY_LIMIT, room_and_depth
 from slosh_cli.scenario import Scenario, Tank, TankScenario
-from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.tank.still import frequency_excess
 from slosh_cli.wagon.torque import brake_torque, moved_mass, total_mass
@@ -156,11 +155,3 @@ def stop_deceleration(scenario: Scenario) -> float:
 def deceleration_of(scenario: Scenario | TankScenario) -> float | None:
     """The same of any scenario; None for a tank alone, which nothing decelerates."""
     return stop_deceleration(scenario) if isinstance(scenario, Scenario) else None
-<<<<<<< HEAD
-
-
-def total_mass(scenario: Scenario) -> float:
-    """Mass of the whole wagon with its load, kg."""
-    return tare_of(scenario.wagon) + frozen_load(scenario.tank).mass
-=======
->>>>>>> main

@@ -10,17 +10,11 @@ from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.loader import Root, read
 from slosh_cli.scenario.rules import Finding
-<<<<<<< HEAD
+from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_limits import Limits
 from slosh_cli.scenario.schema_modes import with_own_coefficients
 from slosh_cli.scenario.schema_rules import ALONE_RULES, STOP_RULES
-from slosh_cli.scenario.schema_run import Braking, Contact, Output, Solver, Track
-=======
-from slosh_cli.scenario.schema_brake import Braking
-from slosh_cli.scenario.schema_modes import with_own_coefficients
-from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
 from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
->>>>>>> main
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
 from slosh_cli.scenario.tree import value_at
