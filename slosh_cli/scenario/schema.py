@@ -12,6 +12,7 @@ from slosh_cli.scenario.loader import Root, read
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_limits import Limits
+from slosh_cli.scenario.schema_line import file_beside
 from slosh_cli.scenario.schema_modes import with_own_coefficients
 from slosh_cli.scenario.schema_rules import ALONE_RULES, STOP_RULES
 from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
@@ -101,8 +102,8 @@ def _with_files_beside(document: Document, path: Path) -> Document:
     """The document with files that it names found from its own folder, those of overrides from where one is."""
     place = ("track", "unevenness", "file")
     name = value_at(document.data, place)
-    if isinstance(name, str) and not name.startswith("x_m,z_m ") and not document.origin(place).override:
-        document.data["track"]["unevenness"]["file"] = str(path.parent / name)
+    if isinstance(name, str) and name.strip() and not document.origin(place).override:
+        document.data["track"]["unevenness"]["file"] = file_beside(name, path.parent)
     return document
 
 
