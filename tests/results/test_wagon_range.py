@@ -67,7 +67,7 @@ def test_axle_load_by_hand(shipped):
 
 def test_limits_of_railways_state_source_and_standing(shipped):
     """EN 14363 sets its 0.6 for twisted track at low speed, not for braking."""
-    told = Extent(unloading=0.7, lifts=0, pitched=False, residual=0.0, residual_cause="", locked=(0.0,) * 4)
+    told = Extent(unloading=0.7, lifts=0, pitched=False, residual=0.0, residual_cause="", unloading_limit=0.6)
     verdicts = [check.as_dict() for check in (*wagon_checks(shipped("paper_80")), *checks(told))]
     stated = {found["check"]: (found["standing"], found["source"]) for found in verdicts if found["standing"]}
     assert {name: standing for name, (standing, _) in stated.items()} == {
@@ -132,7 +132,7 @@ def test_a_residual_is_explained_by_its_cause(shipped, overrides, lifts, said):
     """Only where nothing else is wrong is the tolerance to blame."""
     cause = residual_cause(shipped("paper_80_solid", *overrides), lifts)
     assert said in cause
-    extent = Extent(0.1, lifts, False, 2e-3, cause, (0.0,) * 4)
+    extent = Extent(0.1, lifts, False, 2e-3, cause, 0.6)
     assert any(said in text and "2.0e-03" in text for text in warnings_of(checks(extent)))
     assert warnings_of(checks(replace(extent, residual=1e-6, lifts=0))) == []
 
