@@ -148,7 +148,7 @@ class Record(Answers):
     unevenness_d1_m: float | None = computed(
         "m", "standard deviation in D1 (3-25 m) that a spectrum of the rails realises over the way; else none",
         shown=Shown.JSON | Shown.HISTORY, default_factory=lambda: None, optional=True,
-        line=Told(12, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
+        line=Told(13, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
     energy_residual: float = computed(
         "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
         line=Told(10, "energy ledger, largest residual", ".1e", "of the initial energy"))

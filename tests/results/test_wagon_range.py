@@ -23,7 +23,11 @@ SLIPS = [
         "overhangs them by 6.75 m",
         ("tank.length=25 m", "wagon.pivot_spacing=11.5 m", "tank.liquid.density=500 kg/m^3"),
     ),
-    ("mass of a thin tank shell over that of the car body", "less than the bare shell", ("wagon.car_body.mass=2 t",)),
+    (
+        "mass of a thin tank shell over that of the car body",
+        "less than the bare shell",
+        ("wagon.car_body.mass=2 t", "braking.torque=3 kN m"),
+    ),
     (
         "change of the rail's deflection by the ends of its domain",
         "Write a track.domain.length of `36 m` or more",
@@ -72,6 +76,7 @@ def test_limits_of_railways_state_source_and_standing(shipped):
     stated = {found["check"]: (found["standing"], found["source"]) for found in verdicts if found["standing"]}
     assert {name: standing for name, (standing, _) in stated.items()} == {
         "axle load in t": "standard",
+        "brake force over weight (tau)": "indicative",
         "wheel unloading": "indicative",
     }
     assert "EN 15528" in stated["axle load in t"][1]
