@@ -16,6 +16,7 @@ ORDER = [
     {"tank"},
     {"wagon"},
     {"track"},
+    {"train"},
     {"solver"},
     {"results"},
     {"study"},
