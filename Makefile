@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference studies clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -15,6 +15,7 @@ help:
 	@echo "make bench-batch  ten thousand stops, make bench-docs: put the last results into docs/speed.md"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
+	@echo "make studies   the studies of the documentation again (some twenty minutes)"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
@@ -70,6 +71,10 @@ docs: $(DOCS_READY)
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
+
+studies: $(READY)
+	$(BIN)/python docs/identifiability.py
+	$(BIN)/python docs/real_brakes.py
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

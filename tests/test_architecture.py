@@ -11,7 +11,8 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "slosh_cli"
 
 ORDER = [
-    {"version", "errors", "compiled", "kernel_store", "arrays", "blocks", "friction", "method", "vectors"},
+    {"version", "errors", "compiled", "kernel_store", "arrays", "blocks", "friction", "method", "vectors"}
+    | {"section", "outline"},
     {"scenario"},
     {"tank"},
     {"wagon"},

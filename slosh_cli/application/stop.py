@@ -26,6 +26,7 @@ RUN_FILES: Final = (_HISTORY, _SUMMARY, *FIGURE_FILES)
 
 def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recommendation]:
     """What can be told before anything moves: verdicts, and the model of the liquid that suits."""
+    from slosh_cli.results.filling import filling_checks
     from slosh_cli.results.line import descent_checks
     from slosh_cli.results.liquid_range import expected_checks, tank_checks
     from slosh_cli.results.recommendation import deceleration_of, recommend
@@ -33,7 +34,7 @@ def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recom
 
     tank, deceleration = scenario.tank, deceleration_of(scenario)
     advice = recommend(tank, deceleration)
-    verdicts = tank_checks(tank, advice.sentence)
+    verdicts = (*tank_checks(tank, advice.sentence), *filling_checks(tank, scenario.limits))
     if deceleration is not None:
         verdicts += expected_checks(tank, deceleration, advice.sentence)
     if isinstance(scenario, Scenario):

@@ -1,19 +1,52 @@
 """`slosh check`: whether a scenario is sound, without running it."""
 
+from collections.abc import Iterator, Mapping
+from typing import Final
+
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, Overrides, ScenarioFile
 from slosh_cli.cli.output import say, say_json, warn
+
+_SHEET: Final = {
+    "Mass and volume": {
+        "tank_volume_m3": ("volume of the tank", ".2f", "m^3"),
+        "liquid_volume_m3": ("volume of the liquid", ".2f", "m^3"),
+        "ullage_m3": ("ullage", ".2f", "m^3"),
+        "degree_of_filling": ("liquid over tank, volumes", ".3f", ""),
+        "fill": ("liquid over tank, heights", ".3f", ""),
+        "payload_t": ("payload", ".2f", "t"),
+        "gross_mass_t": ("gross mass", ".2f", "t"),
+        "axle_load_front_t": ("axle load, front", ".2f", "t"),
+        "axle_load_rear_t": ("axle load, rear", ".2f", "t"),
+        "centre_of_gravity_m": ("centre of gravity above rail", ".2f", "m"),
+    },
+    "Brake": {
+        "tau": ("brake force over weight (tau), mean", ".3f", ""),
+        "tau_initial": ("tau at the initial speed", ".3f", ""),
+        "tau_near_rest": ("tau near rest", ".3f", ""),
+        "filling_time_s": ("filling time", ".1f", "s"),
+        "mean_deceleration_m_s2": ("mean deceleration, point mass", ".3f", "m/s^2"),
+        "stopping_distance_m": ("distance from the onset, point mass", ".1f", "m"),
+    },
+    "Periods": {
+        "slosh_period_s": ("first slosh period", ".2f", "s"),
+        "bounce_frequency_Hz": ("bounce of the wagon", ".2f", "Hz"),
+        "pitch_frequency_Hz": ("pitch of the wagon", ".2f", "Hz"),
+    },
+}
+"""The data sheet as the terminal shows it: groups of label, format and unit by name."""
 
 
 def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJson = False) -> ExitCode:
     """Check a scenario without running it.
 
-    Every mistake is named with its line, all of them at once. What is allowed but unlikely, or will lead to overload,
-    locked wheels or a liquid outside its model, is warned of.
+    Every mistake is named with its line, all of them at once. The data sheet tells masses, the brake and the periods of
+    what is sound. What is allowed but unlikely, or will lead to overload, locked wheels or a liquid outside its model,
+    is warned of.
     """
     from slosh_cli.application.stop import outlook
     from slosh_cli.cli.reading import load_given
-    from slosh_cli.results.data_sheet import data_sheet
+    from slosh_cli.results.data_sheet import data_sheet, resonances
     from slosh_cli.results.validity import plain_checks, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
     from slosh_cli.track.spectrum import level_words, realised_level
@@ -21,23 +54,30 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     scenario = load_given(load_any_scenario, scenario_file, overrides)
     kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
     verdicts, advice = outlook(scenario)
-    warnings = warnings_of(verdicts)
-    sheet = data_sheet(scenario) if isinstance(scenario, Scenario) else {}
+    warnings, sheet = warnings_of(verdicts), data_sheet(scenario)
     track = scenario.track if isinstance(scenario, Scenario) else None
-    level = level_words(track.unevenness) if track else ""
+    level, told = level_words(track.unevenness) if track else "", resonances(sheet)
     if as_json:
         found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
-        found["data_sheet"] = sheet
+        found |= {"data_sheet": sheet, "resonances": told}
         if track and level:
             found["unevenness_d1_m"] = realised_level(track.unevenness)
         say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
     else:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        for name, value in sheet.items():
-            say(f"  {name:<20} {value:10.3f}")
-        if level:
-            say(level)
-        say(advice.sentence)
+        for line in (*_lines(sheet), *told, *([level] if level else []), advice.sentence):
+            say(line)
         for warning in warnings:
             warn(warning)
     return ExitCode.DONE
+
+
+def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:
+    """The data sheet in groups; a dash where there is no number."""
+    for group, rows in _SHEET.items():
+        known = {name: row for name, row in rows.items() if name in sheet}
+        yield from (["", group] if known else [])
+        for name, (label, form, unit) in known.items():
+            value = sheet[name]
+            yield f"  {label:<36}{'-' if value is None else format(value, form):>10} {unit}".rstrip()
+    yield ""

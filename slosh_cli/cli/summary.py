@@ -105,8 +105,8 @@ def _wheels(result: Result) -> "Table":
 
 
 def _title(result: Result) -> str:
-    speed, torque = result.initial_speed_m_s * 3.6, result.torque_N_m / 1e3
-    return f"{result.name}: {speed:.4g} km/h, {torque:.4g} kN m per wheel, load: {result.liquid_model}"
+    speed = result.initial_speed_m_s * 3.6
+    return f"{result.name}: {speed:.4g} km/h, {result.torque_words}, load: {result.liquid_model}"
 
 
 def _where(files: Mapping[str, Any]) -> str:

@@ -179,7 +179,7 @@ def _conditions(record: Record) -> str:
     """Scenario, speed, torque and load in one line, for the head of a figure."""
     load = f"liquid ({record.liquid_model})" if record.has_liquid else "equivalent solid"
     speed = f"{record.initial_speed_m_s * 3.6:.4g} km/h"
-    torque = f"{record.torque_N_m / 1e3:.4g} kN m per wheel"
+    torque = record.torque_words
     return f"{shorten(record.name, 48, placeholder='...')}: V₀ = {speed}, {torque}, {load}"
 
 

@@ -19,8 +19,8 @@ from matplotlib.tri import Triangulation
 from slosh_cli.report import figures
 from slosh_cli.report.figures import FRONT, REAR
 from slosh_cli.report.saving import INK, MUTED
+from slosh_cli.section import TankGeometry, section_of
 from slosh_cli.tank.mesh import Floats
-from slosh_cli.tank.section import TankGeometry, section_of
 
 if TYPE_CHECKING:
     from slosh_cli.solver.excite import Excitation

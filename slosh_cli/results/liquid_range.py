@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Tank
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import section_of
 from slosh_cli.tank.comparison import ROUNDING, given_fractions, impossible_fractions
-from slosh_cli.tank.section import section_of
 from slosh_cli.tank.still import frequency_excess
 
 FREQUENCY_LIMIT = 0.05

@@ -106,6 +106,9 @@ class Record(Answers):
     liquid_in_range: bool = derived(
         "", "whether the run stayed in the range of the liquid's model", Place.RANGE, shown=Shown.STUDY,
         of=lambda run: all(check.within for check in _of_range(run) if check.name not in _NOT_THE_LIQUID))
+    fill: float = derived(
+        "1", "depth of the still liquid over the tank's inner height", Place.SURFACE, given="tank.fill",
+        shown=~Shown.JSON)
     max_surface_m: float = computed(
         "m", "largest rise of the free surface at an end wall", Place.SURFACE,
         line=Told(4, "surface rise at an end wall, largest", ".2f", "m"))
@@ -135,20 +138,23 @@ class Record(Answers):
     slide_protection_air: float | None = computed(
         "1", "air that slide protection used: fillings of one wheelset's brake, all wheelsets; none without it",
         shown=~Shown.STUDY)
+    speed_at_first_lock_m_s: float | None = computed(
+        "m/s", "speed of the wagon when the first wheel locked; none when none did", Place.WHEELS,
+        line=Told(8, "speed at the first lock", ".2f", "m/s"), default_factory=lambda: None)
     mean_total_wheel_load_N: float = computed(
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
-        line=Told(8, "mean sum of wheel loads / weight - 1", ".1e"))
+        line=Told(9, "mean sum of wheel loads / weight - 1", ".1e"))
     weight_N: float = computed("N", "weight of wagon and load", shown=~Shown.JSON)
     unevenness_d1_m: float | None = computed(
         "m", "standard deviation in D1 (3-25 m) that a spectrum of the rails realises over the way; else none",
         shown=Shown.JSON | Shown.HISTORY, default_factory=lambda: None, optional=True,
-        line=Told(12, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
+        line=Told(13, "level of the rails in D1 over the way", ".2f", "mm (one-sided spectrum, per rad/m)", per=1e-3))
     energy_residual: float = computed(
         "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
-        line=Told(9, "energy ledger, largest residual", ".1e", "of the initial energy"))
-    steps: int = computed("1", "accepted steps of the integrator", line=Told(10, "steps"))
+        line=Told(10, "energy ledger, largest residual", ".1e", "of the initial energy"))
+    steps: int = computed("1", "accepted steps of the integrator", line=Told(11, "steps"))
     rejected_steps: int = computed("1", "rejected steps of the integrator")
-    solve_seconds: float = computed("s", "time spent in the solver", shown=~Shown.STUDY, line=Told(11, "solver time"))
+    solve_seconds: float = computed("s", "time spent in the solver", shown=~Shown.STUDY, line=Told(12, "solver time"))
     in_model_range: bool = derived(
         "", "false where a check says that the run left the range of its own model",
         of=lambda run: all(check.within for check in _of_range(run)), line=Told(5, "within the range of its model"))
@@ -164,6 +170,13 @@ class Record(Answers):
     # fmt: on
     time: Vector
     channels: Mapping[str, Vector]
+
+    @property
+    def torque_words(self) -> str:
+        """The brake torque per wheel: of one that grows towards the stop, at the initial speed and at its largest."""
+        most = max(getattr(self, "brake_torque_max_N_m", (0.0,)))  # files of earlier versions have none
+        grown = f" to {most / 1e3:.4g}" if most > 1.001 * self.torque_N_m else ""
+        return f"{self.torque_N_m / 1e3:.4g}{grown} kN m per wheel"
 
     @property
     def has_liquid(self) -> bool:
@@ -188,7 +201,7 @@ class Record(Answers):
     def __repr__(self) -> str:
         """What it was, how it ended, and the checks exceeded most: less than a screen."""
         found = vars(self)  # a file of an earlier version may lack some
-        load = f"{self.torque_N_m / 1e3:.4g} kN m per wheel, load: {self.liquid_model}"
+        load = f"{self.torque_words}, load: {self.liquid_model}"
         lines = [f"{type(self).__name__} {self.name}: {self.initial_speed_m_s * 3.6:.4g} km/h, {load}"]
         if self.braking_distance_m is None:
             lines.append(f"  {self.status}, no braking distance: {self.reason}")

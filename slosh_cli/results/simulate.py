@@ -10,21 +10,24 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.method import START
 from slosh_cli.results.answers import PerWheel
+from slosh_cli.results.channels import WHEELS
+from slosh_cli.results.filling import filling_checks
 from slosh_cli.results.histories import LOSS_PLACES, WHOLE, channels_of
 from slosh_cli.results.line import check_covered
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
+from slosh_cli.results.slides import Slide, slide_check
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
+from slosh_cli.section import section_of
 from slosh_cli.solver import advance
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
 from slosh_cli.solver.setup import ReadyStop, problem
 from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
-from slosh_cli.tank.section import section_of
 from slosh_cli.track.spectrum import realised_level
 from slosh_cli.wagon.model import POSITION
 
@@ -133,6 +136,7 @@ def _of_wheels(scenario: Scenario, vehicle: Vehicle, static_loads: PerWheel) -> 
         "min_wheel_load_N": _per_wheel(account.least) if braked else static_loads,
         "max_wheel_load_N": _per_wheel(account.largest) if braked else static_loads,
         "locked_time_s": _per_wheel(account.locked_time),
+        "speed_at_first_lock_m_s": min(((one.start, one.speed) for one in _slides(account)), default=(0.0, None))[1],
         "brake_torque_max_N_m": _per_wheel(account.largest_torque),
         "slide_protection_cycles": float(brake.vents.sum()) if protected else None,
         "slide_protection_air": float(brake.air.sum()) if protected else None,
@@ -157,6 +161,8 @@ def _verdicts(scenario: Scenario, stop: ReadyStop, run: Run, advice: Recommendat
         *tank_checks(tank, sentence),
         *motion_checks(tank, motion, sentence),
         *checks(_extent(scenario, stop, run)),
+        slide_check(_slides(stop.vehicle.account), scenario),
+        *filling_checks(tank, scenario.limits),
         *wagon_checks(scenario),
         *(rest_checks(scenario, stop) if stopped else ()),
     )
@@ -171,8 +177,16 @@ def _extent(scenario: Scenario, stop: ReadyStop, run: Run) -> Extent:
         pitched=run.outcome == advance.PITCH_LIMIT,
         residual=stop.train.largest_residual,
         residual_cause=residual_cause(scenario, account.lifted),
-        locked=_per_wheel(account.locked_time),
+        unloading_limit=scenario.limits.unloading,
     )
+
+
+def _slides(account: Any) -> list[Slide]:
+    """What the wheels that locked did, by the account of their vehicle."""
+    found = zip(
+        WHEELS, account.locked_time, account.lock_time, account.lock_speed, account.slid, account.slid_work, strict=True
+    )
+    return [Slide(wheel, *map(float, numbers)) for wheel, *numbers in found if numbers[0] > 0.0]
 
 
 def _final_energy(stop: ReadyStop) -> dict[str, float]:

@@ -12,27 +12,27 @@ from collections.abc import Iterator
 import numpy as np
 
 from slosh_cli.arrays import Vector
+from slosh_cli.results.point_stop import mean_tau
 from slosh_cli.results.recommendation import stop_deceleration
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario, rail_reach
+from slosh_cli.section import section_of
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.section import section_of
 from slosh_cli.wagon.model import POSITION, wagon_model
 from slosh_cli.wagon.torque import brake_torque, nominal_torque, total_mass
 
-_AXLE_LOAD_LIMIT = 22.5
-"""t; line category D (EN 15528), the heaviest that most European lines take."""
 _FRAME_LIMIT = 3.5
 """t; heavier than any bare frame of a two-axle freight bogie."""
 _OVERHANG_LIMIT = 1.6
 """Longest tank, in pivot spacings; tank wagons reach 1.2 to 1.5, beyond that the ends leave the gauge in curves."""
+_TAU_SOURCE = "usual design limits of a freight wagon's brake; no clause of a standard was verified"
 _SHELL_MASS_PER_AREA = 7850.0 * 0.005
 """kg/m^2; a steel wall of 5 mm."""
 
 
 def wagon_checks(scenario: Scenario) -> tuple[Check, ...]:
     """Verdicts on masses, lengths and track of a scenario."""
-    return (_axle_check(scenario), *_mass_checks(scenario), *_track_checks(scenario))
+    return (_axle_check(scenario), _tau_check(scenario), *_mass_checks(scenario), *_track_checks(scenario))
 
 
 def _mass_checks(scenario: Scenario) -> Iterator[Check]:
@@ -68,17 +68,30 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
 
 
 def _axle_check(scenario: Scenario) -> Check:
-    axle = total_mass(scenario) / 4e3
+    axle, limit = total_mass(scenario) / 4e3, scenario.limits.axle_load / 1e3
     return Check(
         "axle load in t",
         "operation",
         axle,
-        _AXLE_LOAD_LIMIT,
-        f"Overload: each axle carries {axle:.1f} t; most lines end at {_AXLE_LOAD_LIMIT} t (category D, EN 15528). "
-        "Check masses, liquid density and fill.",
+        limit,
+        f"Overload: each axle carries {axle:.1f} t; most lines end at 22.5 t (category D, EN 15528), the limit here is "
+        f"{limit:g} t. Check masses, liquid density and fill.",
         "standard",
         "EN 15528, line category D",
     )
+
+
+def _tau_check(scenario: Scenario) -> Check:
+    """The brake against what wagons with and without wheel slide protection are built for."""
+    tau, limits, protected = mean_tau(scenario), scenario.limits, scenario.braking.slide_protection is not None
+    meaning = (
+        f"The brake asks for {tau:.3f} of the weight, on average of the way; wagons without wheel slide protection are "
+        f"built for at most {limits.tau:g}, with it {limits.tau_with_protection:g}."
+    )
+    if tau > limits.tau_with_protection:
+        meaning += " No freight wagon has such a brake."
+    most = limits.tau_with_protection if protected else limits.tau
+    return Check("brake force over weight (tau)", "operation", tau, most, meaning, "indicative", _TAU_SOURCE)
 
 
 def shell_mass(scenario: Scenario) -> float:

@@ -85,6 +85,8 @@ class Part(BaseModel):
                     del entry["default"]  # computed or a whole part: the descriptions say how
                 elif "default" in entry and "x-unit" in entry:
                     entry["default"] = f"{entry['default']} {entry['x-unit']}"
+                elif "default" in entry and "x-unit" in entry.get("items", ()):
+                    entry["default"] = [f"{value} {entry['items']['x-unit']}" for value in entry["default"]]
         return {"$schema": _DIALECT, **schema, "patternProperties": {f"^{OWN}": True}}
 
     @classmethod

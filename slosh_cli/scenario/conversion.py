@@ -59,6 +59,7 @@ DIMENSIONS: Final[dict[str, Dimension]] = {
     for entry in (
         _dimension("mass", "a mass", "kg", {"kg": 1.0, "t": 1e3}, {"g": 1e-3, "lb": 0.45359237}),
         _dimension("length", "a length", "m", {"m": 1.0, "mm": 1e-3}, _LENGTHS),
+        _dimension("volume", "a volume", "m^3", {"m^3": 1.0, "L": 1e-3}),
         _dimension("time", "a time", "s", {"s": 1.0, "ms": 1e-3}, {"min": 60.0, "h": 3600.0}),
         _dimension("speed", "a speed", "m/s", {"km/h": 1 / 3.6, "m/s": 1.0}, {"mph": 0.44704, "kn": 1852 / 3600}),
         _dimension("acceleration", "an acceleration", "m/s^2", {"m/s^2": 1.0, "g": STANDARD_GRAVITY}),
@@ -82,6 +83,7 @@ DIMENSIONS: Final[dict[str, Dimension]] = {
         _dimension("damping_per_length", "a damping per length", "N s/m^2", {"N s/m^2": 1.0, "kN s/m^2": 1e3}),
         _dimension("shear_damping", "a shear damping", "N s", {"N s": 1.0, "kN s": 1e3}),
         _dimension("contact_stiffness", "a Hertzian contact stiffness", "N/m^1.5"),
+        _dimension("kinematic_viscosity", "a kinematic viscosity", "m^2/s", {"mm^2/s": 1e-6, "m^2/s": 1.0}),
         _dimension("inverse_speed", "an inverse speed", "s/m"),
     )
 }

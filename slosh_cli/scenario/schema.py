@@ -4,14 +4,17 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.loader import Root, read
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema_brake import Braking
+from slosh_cli.scenario.schema_limits import Limits
+from slosh_cli.scenario.schema_line import file_beside
 from slosh_cli.scenario.schema_modes import with_own_coefficients
-from slosh_cli.scenario.schema_rules import STOP_RULES, TANK_RULES
+from slosh_cli.scenario.schema_rules import ALONE_RULES, STOP_RULES
 from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
@@ -22,9 +25,15 @@ from slosh_cli.scenario.yaml_text import parse
 class TankScenario(Root):
     """A tank alone. Every quantity is SI inside."""
 
-    rules = TANK_RULES
+    rules = ALONE_RULES
 
     tank: Tank = Field(description="The tank and what is in it.")
+    limits: Limits = Field(default=Limits.model_construct(), description="What verdicts hold the tank against.")
+
+    @model_validator(mode="after")
+    def _load(self) -> Self:
+        vars(self)["tank"] = self.tank.loaded(None)
+        return self
 
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
@@ -43,6 +52,12 @@ class Scenario(Root):
     braking: Braking = Field(description="The stop: speed, torque and when.")
     solver: Solver = Field(default=Solver.model_construct(), description="Accuracy and patience.")
     output: Output = Field(default=Output.model_construct(), description="What is written.")
+    limits: Limits = Field(default=Limits.model_construct(), description="What verdicts hold the wagon against.")
+
+    @model_validator(mode="after")
+    def _load(self) -> Self:
+        vars(self)["tank"] = self.tank.loaded(tare_of(self.wagon))
+        return self
 
     def after_overrides(self, document: Document, before: Self | None, file: str) -> Self:
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
@@ -72,7 +87,9 @@ def load_tank_scenario(path: str | Path, overrides: Iterable[str] = ()) -> TankS
     found = load_any_scenario(path, overrides)
     if isinstance(found, TankScenario):
         return found
-    return TankScenario(format=found.format, name=found.name, description=found.description, tank=found.tank)
+    return TankScenario(
+        format=found.format, name=found.name, description=found.description, tank=found.tank, limits=found.limits
+    )
 
 
 def load_any_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario | TankScenario:
@@ -85,8 +102,8 @@ def _with_files_beside(document: Document, path: Path) -> Document:
     """The document with files that it names found from its own folder, those of overrides from where one is."""
     place = ("track", "unevenness", "file")
     name = value_at(document.data, place)
-    if isinstance(name, str) and not name.startswith("x_m,z_m ") and not document.origin(place).override:
-        document.data["track"]["unevenness"]["file"] = str(path.parent / name)
+    if isinstance(name, str) and name.strip() and not document.origin(place).override:
+        document.data["track"]["unevenness"]["file"] = file_beside(name, path.parent)
     return document
 
 
@@ -103,7 +120,7 @@ def json_schema() -> dict[str, Any]:
         "required": [name for name in schema["required"] if name not in parts],
         "if": {"anyOf": [{"required": [part]} for part in parts]},
         "then": {"required": list(parts), "properties": {"tank": {"required": ["bottom_height"]}}},
-        "else": {"properties": dict.fromkeys(alone, False)},
+        "else": {"properties": dict.fromkeys(alone, False) | {"tank": {"properties": {"gross_mass": False}}}},
     }
 
 

@@ -136,11 +136,19 @@ class _MeasuredRail(Leaf):
             raise ValueRefused(rule, plain(value), f"write a name such as `{self.sample()}`")
         if value.startswith(_CONTENT):
             return _checked_content(value)
-        path = Path(value)
-        return _content(path, path.stat().st_mtime_ns if path.is_file() else 0)
+        try:
+            written = Path(value).stat().st_mtime_ns
+        except (OSError, ValueError):  # the reader of tables says why
+            written = 0
+        return _content(Path(value), written)
 
     def json_schema(self) -> dict[str, Any]:
         return {"type": "string", "minLength": 1}
+
+
+def file_beside(name: str, folder: Path) -> str:
+    """A measured file that is named from `folder`; what is its content already stays."""
+    return name if name.startswith(_CONTENT) else str(folder / name)
 
 
 @lru_cache(maxsize=8)

@@ -12,10 +12,12 @@ from typing import Any, Final, TypeVar
 from pydantic import ValidationError
 
 from slosh_cli.errors import Problem, ScenarioError
+from slosh_cli.scenario.amounts import AMOUNTS, tare_of
 from slosh_cli.scenario.base import Path
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.leaves import Quantity
 from slosh_cli.scenario.schema_tank import TankBase
+from slosh_cli.scenario.schema_wagon import Wagon
 from slosh_cli.scenario.tree import spot_of
 from slosh_cli.scenario.units import plain, shown
 
@@ -25,6 +27,11 @@ _USERS: Final = ("modal",)
 """Models of the liquid that use slosh coefficients."""
 _WITHOUT_EFFECT: Final = frozenset({"bottom_height", "liquid", "coefficients", "modes", "baffles"})
 """Keys of a tank on which its slosh modes do not depend; of `liquid` the density does tell."""
+_OF_TARE: Final = (
+    "wagon",
+    *(f"wagon.{body}{mass}" for body in ("car_body", "bogie", "wheelset") for mass in ("", ".mass")),
+)
+"""Keys on which the load depends where it stands as a gross mass."""
 
 
 class OutlivedCoefficientsError(ScenarioError):
@@ -49,8 +56,10 @@ def with_own_coefficients(tank: _T, document: Document, before: TankBase | None,
     return tank.model_copy(update={"coefficients": "computed"})
 
 
-def shapes_modes(key: str) -> bool:
-    """Whether the slosh modes depend on the value at a dotted key path."""
+def shapes_modes(key: str, tank: TankBase) -> bool:
+    """Whether the slosh modes of a tank depend on the value at a dotted key path."""
+    if tank.gross_mass is not None and key in _OF_TARE:
+        return True
     first, *rest = key.split(".")
     if first != "tank" or not rest:
         return first == "tank"
@@ -59,12 +68,15 @@ def shapes_modes(key: str) -> bool:
 
 def _tank_of_file(document: Document, tank: TankBase) -> TankBase | None:
     """The tank as the file has it before any override; None where it is no sound tank of the shape of `tank`."""
-    original = document.original.get("tank") if isinstance(document.original, dict) else None
+    original, wagon = (
+        document.original.get(key) if isinstance(document.original, dict) else None for key in ("tank", "wagon")
+    )
     if not isinstance(original, dict) or original.get("shape") != getattr(tank, "shape", None):
         return None
     try:
-        return type(tank).from_text(original)
-    except ValidationError:
+        found = type(tank).from_text(original)
+        return found.loaded(tare_of(Wagon.from_text(wagon)) if found.gross_mass is not None else None)
+    except (ValidationError, ArithmeticError, TypeError):
         return None
 
 
@@ -73,7 +85,8 @@ def _changes(before: TankBase | None, tank: TankBase, document: Document) -> Ite
     if before is not None and type(before) is not type(tank):
         yield ("tank", "shape")
         return
-    names = [name for name in type(tank).model_fields if name not in _WITHOUT_EFFECT]
+    unused = _WITHOUT_EFFECT if before is None else _WITHOUT_EFFECT.union(AMOUNTS)  # the fill tells of them
+    names = [name for name in type(tank).model_fields if name not in unused]
     for path in (*(("tank", name) for name in names), ("tank", "liquid", "density")):
         if document.origin(path).override if before is None else not _same(_value(before, path), _value(tank, path)):
             yield path
@@ -93,7 +106,8 @@ def _value(tank: TankBase, path: Path) -> Any:
 
 def _problem(path: Path, before: TankBase | None, tank: TankBase, document: Document) -> Problem:
     key = ".".join(map(str, path))
-    override = document.origin(path).override or next((o for o in document.overrides if "tank" in o), key)
+    likely = [given for part in ("tank", "wagon") for given in document.overrides if part in given]
+    override = document.origin(path).override or next(iter(likely), key)
     rule = "must stay as it is, because the given slosh coefficients belong to the unchanged tank"
     given = _words(tank, path)
     if before is not None and type(before) is type(tank):

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from slosh_cli.scenario import rail_reach
+from slosh_cli.scenario.amounts import fits_tank, no_wagon
 from slosh_cli.scenario.rules import Finding, Values
 from slosh_cli.scenario.schema_line import SMOOTH_START
 from slosh_cli.scenario.schema_run import Foundation, Rail
@@ -225,9 +226,10 @@ def _dimension_key(v: Values, name: str) -> str:
     return next(key for key in keys if v.has(key))
 
 
-TANK_RULES: Final = (_coefficients, _baffles, _slot)
+_TANK_RULES: Final = (_coefficients, _baffles, _slot, fits_tank)
+ALONE_RULES: Final = (*_TANK_RULES, no_wagon)
 STOP_RULES: Final = (
-    *TANK_RULES,
+    *_TANK_RULES,
     _wheels_apart,
     _bogies_apart,
     _domain_holds_wagon,

@@ -2,17 +2,20 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
 from pydantic import Discriminator, Field, Tag
 
 from slosh_cli.errors import ValueRefused
+from slosh_cli.scenario.amounts import AMOUNTS, FILLS, fill_of, wanted_volume
 from slosh_cli.scenario.base import Alias, Aliased, Part
 from slosh_cli.scenario.leaves import Count, Judge, Number, Quantity, Range
 from slosh_cli.scenario.schema_polygon import Outline
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import Choice
 
+_FOLLOWS: Any = None
+"""No value of its own: `TankBase.loaded` finds it."""
 _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
 
 
@@ -98,13 +101,27 @@ class Baffle(Part):
 
 
 class TankBase(Aliased):
-    """What tanks of every shape have. Values are of the whole tank."""
+    """What tanks of every shape have. Values are of the whole tank.
+
+    How much is in it stands in one of four keys. `fill` is the depth whichever was written, in every checked scenario.
+    """
+
+    exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = (("fill", *AMOUNTS),)
 
     length: Annotated[float, Quantity("length", Range(0.05, 200.0), "15.5 m")] = Field(
         description="Inner length between the flat ends, m."
     )
-    fill: Annotated[float, Number(Range(0.02, 0.995), "0.5")] = Field(
-        description="Depth of the liquid as a fraction of the tank's inner height."
+    fill: Annotated[float, Number(FILLS, "0.5")] = Field(
+        default=_FOLLOWS, description="Depth of the liquid as a fraction of the tank's inner height."
+    )
+    volume: Annotated[float | None, Quantity("volume", Range(0.0, 1e5, above=True), "45 m^3")] = Field(
+        default=None, description="Volume of the liquid, m^3, in place of the fill."
+    )
+    mass: Annotated[float | None, Quantity("mass", Range(0.0, 1e8, above=True), "60 t")] = Field(
+        default=None, description="Mass of the liquid, kg, in place of the fill."
+    )
+    gross_mass: Annotated[float | None, Quantity("mass", Range(0.0, 1e8, above=True), "90 t")] = Field(
+        default=None, description="Mass of the wagon with its load, kg, in place of the fill; not for a tank alone."
     )
     bottom_height: Annotated[float, Quantity("length", Range(0.0, 6.0), "1.15 m")] = Field(
         default=0.0,
@@ -125,9 +142,21 @@ class TankBase(Aliased):
     )
 
     def unwritten(self, *, as_text: bool) -> Collection[str]:
-        """The number of modes beside given coefficients, where a file must not set it, or where nobody asked for it."""
+        """The number of modes beside given coefficients, where a file must not set it, or where nobody asked for it;
+        the fill that follows from another amount."""
         counts = self.coefficients == "computed" and (as_text or "modes" in self.model_fields_set)
-        return () if counts else ("modes",)
+        return (*(() if counts else ("modes",)), *(() if "fill" in self.model_fields_set else ("fill",)))
+
+    def loaded(self, tare: float | None) -> Self:
+        """This tank with the fill that belongs to its amount of liquid; `tare` (kg) is of the wagon that carries it.
+
+        The amount must have passed the rules of `amounts`.
+        """
+        if "fill" in self.model_fields_set:
+            return self
+        tank = self.model_copy()
+        vars(tank)["fill"] = fill_of(tank, wanted_volume(tank, tare))
+        return tank
 
 
 class HorizontalCylinder(TankBase):

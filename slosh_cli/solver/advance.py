@@ -123,12 +123,25 @@ def _resolving_step(vehicle):
 
 
 @inner_kernel
+def _full_slowing(vehicle, time, step):
+    """Deceleration (m/s^2) of a vehicle; where its brake builds up within the `step` (s), what the full brake will give.
+
+    While the deceleration grows from nothing to A in steps h, the energy that these leave out adds up to that of one
+    growth by A: with `A h` within the bound it stays below the tolerance, with `a h` of the instant it would not.
+    """
+    slowing, applied = abs(vehicle.points[START].a[0]), vehicle.brake.application(time)
+    if 0.0 < applied < vehicle.brake.application(time + step):
+        return slowing / applied
+    return slowing
+
+
+@inner_kernel
 def _limited_step(train):
     """The step to try, not past a break or the time limit; and whether it ends at the break."""
     control, vehicles = train.control, train.vehicles
     step, slowing = min(train.next_step, control.longest_step), 0.0
     for k in range(len(vehicles)):
-        slowing = max(slowing, abs(vehicles[k].points[START].a[0]))
+        slowing = max(slowing, _full_slowing(vehicles[k], train.time, step))
     if slowing * step > control.most_slowing:
         step = control.most_slowing / slowing
     for k in range(len(vehicles)):

@@ -42,9 +42,28 @@ def _settle_extremes(vehicle, step):
         account.load_seconds += step * mean
         turned = max(vehicle.points[START].torque[i], vehicle.points[END].torque[i])
         account.largest_torque[i] = max(account.largest_torque[i], turned)
-        if vehicle.locked[i]:
-            account.locked_time[i] += step
     account.seconds += step
+
+
+@inner_kernel
+def _settle_slides(vehicle, time, step):
+    """How long locked wheels slide from `time` (s) on, how far and with what work; they are as in the step in hand."""
+    account, points = vehicle.account, vehicle.points
+    start, middle, end = points[START], points[MIDDLE], points[END]
+    for i in range(vehicle.wagon.wheels):
+        if not vehicle.locked[i]:
+            account.sliding[i] = account.sliding_work[i] = 0.0
+            continue
+        if account.locked_time[i] == 0.0:
+            account.lock_time[i], account.lock_speed[i] = time, start.v[0]
+        account.locked_time[i] += step
+        power = (
+            OUTER * (start.creep[i] * start.v[0] + middle.creep[i] * middle.v[0]) + DIAGONAL * end.creep[i] * end.v[0]
+        )
+        account.sliding[i] += end.q[0] - start.q[0]
+        account.sliding_work[i] += step * power
+        if account.sliding[i] > account.slid[i]:
+            account.slid[i], account.slid_work[i] = account.sliding[i], account.sliding_work[i]
 
 
 @kernel
@@ -92,6 +111,7 @@ def accept(train, rows, step):
     for k in range(len(vehicles)):
         vehicle, account = vehicles[k], vehicles[k].account
         _settle_extremes(vehicle, step)
+        _settle_slides(vehicle, train.time, step)
         _follow_contacts(vehicle)
         vehicle.liquid.accept(step)
         copy_point(vehicle.points[END], vehicle.points[START])

@@ -105,9 +105,10 @@ class _Account(Block):
 
     `energies` (3,) J: kinetic, elastic, gravity's and slosh; `losses` J, in the order of the ledger's. Since its onset,
     at `onset_time` s and `onset_position` m: `least`, `largest` wheel loads (N), `largest_torque` (N m) transmitted and
-    `locked_time` (s), each (wheels,);
-    `load_seconds` N s of all wheels in `seconds`. `surface` is the largest rise, m; `lifted` says how often wheels
-    lifted off or landed; the rest counts what was computed.
+    `locked_time` (s), each (wheels,); `lock_time` s and `lock_speed` m/s of a wheel's first lock; `slid` m and
+    `slid_work` J of its longest slide, beside those of the slide in hand; `load_seconds` N s of all wheels in
+    `seconds`. `surface` is the largest rise, m; `lifted` says how often wheels lifted off or landed; the rest counts
+    what was computed.
     """
 
     energies_before: Vector
@@ -115,6 +116,12 @@ class _Account(Block):
     losses_before: Vector
     losses: Vector
     locked_time: Vector
+    lock_time: Vector
+    lock_speed: Vector
+    sliding: Vector
+    sliding_work: Vector
+    slid: Vector
+    slid_work: Vector
     least: Vector
     largest: Vector
     largest_torque: Vector

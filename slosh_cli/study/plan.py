@@ -127,7 +127,7 @@ class Study:
 
     def _check_coefficients(self) -> None:
         """Raise ScenarioError where slosh coefficients would be used for another tank than the one they belong to."""
-        shaping = [number for number, axis in enumerate(self.axes) if shapes_modes(axis.key)]
+        shaping = [number for number, axis in enumerate(self.axes) if shapes_modes(axis.key, self.base.tank)]
         choosing = [number for number, axis in enumerate(self.axes) if axis.key in (LIQUID, _COEFFICIENTS)]
         for number in shaping:
             self._check_common_coefficients(self.axes[number])

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slosh_cli.section import TankGeometry, section_of
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.longitudinal import longitudinal_modes, mode_number
 from slosh_cli.tank.mesh import Floats
-from slosh_cli.tank.section import TankGeometry, section_of
 
 
 @dataclass(frozen=True, eq=False)

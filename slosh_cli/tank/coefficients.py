@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank
 from slosh_cli.tank.longitudinal import LongitudinalMode, LongitudinalModes, longitudinal_modes
-from slosh_cli.tank.section import liquid_depth, section_of
 
 
 @dataclass(frozen=True)

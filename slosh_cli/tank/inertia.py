@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank.eigenproblem import HalfSectionElements, factorised
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedTank, frozen_load
 from slosh_cli.tank.mesh import Floats
-from slosh_cli.tank.section import liquid_depth, section_of
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import HalfSection, half_section
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from slosh_cli.tank.section import TankGeometry, section_of
+from slosh_cli.section import TankGeometry, section_of
 
 
 class LoadedLiquid(Protocol):

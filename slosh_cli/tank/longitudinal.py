@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from threading import Lock
 
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import Section
 from slosh_cli.tank.eigenproblem import HalfSectionElements
 from slosh_cli.tank.errors import TankError
-from slosh_cli.tank.section import Section
 from slosh_cli.tank.shape import ModeShape, mode_shape
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section

@@ -12,7 +12,7 @@ import numpy as np
 from slosh_cli.arrays import Integers, Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.section import PolygonalSection, Section
+from slosh_cli.section import PolygonalSection, Section
 
 _NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""

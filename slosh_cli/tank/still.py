@@ -10,10 +10,10 @@ from typing import Protocol
 import numpy as np
 
 from slosh_cli.arrays import Array
+from slosh_cli.section import section_of
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
-from slosh_cli.tank.section import section_of
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.tank.shallow import ShallowLiquid
 

@@ -12,9 +12,9 @@ from enum import IntEnum
 
 import numpy as np
 
+from slosh_cli.outline import Loop, cut_below, cut_right, surface_intervals
+from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection, Section
 from slosh_cli.tank.errors import TankError
-from slosh_cli.tank.outline import Loop, cut_below, cut_right, surface_intervals
-from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, Section
 
 _SYMMETRY_TOLERANCE = 1e-5  # of the section's size: what a drawing's rounding leaves
 _ROUNDING = 1e-9  # of the section's height: what arithmetic leaves

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.tank.load import frozen_load
 
 _DELAY, _BUILD_UP = 0.2, 4.0
@@ -20,8 +21,7 @@ _WHEELS = 8
 
 def total_mass(scenario: Scenario) -> float:
     """Mass of the whole wagon with its load, kg."""
-    wagon = scenario.wagon
-    return wagon.car_body.mass + 2.0 * wagon.bogie.mass + 4.0 * wagon.wheelset.mass + frozen_load(scenario.tank).mass
+    return tare_of(scenario.wagon) + frozen_load(scenario.tank).mass
 
 
 def moved_mass(scenario: Scenario) -> float:
@@ -36,9 +36,10 @@ def changeover_share(scenario: Scenario) -> float:
     return changeover.empty_share if changeover and total_mass(scenario) < changeover.gross_mass else 1.0
 
 
-def brake_torque(scenario: Scenario, speed: float) -> float:
-    """Torque (N m) of a wheel that rolls at `speed` (m/s) with the brake fully applied, the changeover included."""
-    rubbing, left = scenario.braking.rubbing, changeover_share(scenario)
+def brake_torque(scenario: Scenario, speed: float, applied: float = 1.0) -> float:
+    """Torque (N m) of a wheel that rolls at `speed` (m/s) with a part of the brake `applied`; of it the load changeover
+    leaves its share."""
+    rubbing, left = scenario.braking.rubbing, applied * changeover_share(scenario)
     if rubbing is None:
         return left * constant_torque(scenario)
     force = left * rubbing.force

@@ -9,6 +9,7 @@ from stand_ins import PAPER, Slosh
 from slosh_cli.cli.exit_codes import ExitCode
 
 COMPUTED = ("--set", "tank.coefficients=computed")
+THICK = "limits.viscosity=3000 mm^2/s"
 TANK = PAPER.parent / "kolaei_half.yaml"
 
 
@@ -41,10 +42,14 @@ def test_findings_are_warnings(slosh: Slosh, override: str, said: str) -> None:
 
 
 def test_a_gentle_stop_of_the_paper_s_wagon_is_told_nothing(slosh: Slosh) -> None:
-    found = told(slosh, PAPER, "braking.torque=2 kN m")
+    """But that its tank is half full, unless the liquid is exempt."""
+    found = told(slosh, PAPER, "braking.torque=2 kN m", THICK)
     assert found["warnings"] == []
     assert all(check["within"] for check in found["checks"])
-    assert found["recommendation"]["sentence"] in slosh("check", PAPER, *COMPUTED, "--set", "braking.torque=2 kN m").out
+    gentle = ("--set", "braking.torque=2 kN m")
+    assert found["recommendation"]["sentence"] in slosh("check", PAPER, *COMPUTED, *gentle).out
+    (law,) = told(slosh, PAPER, "braking.torque=2 kN m")["warnings"]
+    assert "the corresponding rule could not be verified" in law
 
 
 @pytest.mark.parametrize(
@@ -69,8 +74,9 @@ def test_given_coefficients_beyond_their_bound(slosh: Slosh) -> None:
 
 
 def test_a_tank_alone_is_told_up_to_which_deceleration_modes_may_be_used(slosh: Slosh) -> None:
-    found = told(slosh, TANK)
+    found = told(slosh, TANK, THICK)
     assert found["describes"] == "a tank alone"
+    assert {"tank_volume_m3", "slosh_period_s"} < set(found["data_sheet"])
     assert found["warnings"] == []
     assert found["recommendation"]["liquid_model"] is None
     assert found["recommendation"]["modal_up_to_m_s2"] == pytest.approx(1.48, abs=0.01)

@@ -34,6 +34,7 @@ KEYS = [
     "brake_torque_max_N_m",
     "slide_protection_cycles",
     "slide_protection_air",
+    "speed_at_first_lock_m_s",
     "energy_residual",
     "steps",
     "rejected_steps",

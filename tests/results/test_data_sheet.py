@@ -2,9 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.linalg import eigh
 
-from slosh_cli.results.data_sheet import data_sheet
+from slosh_cli.results.data_sheet import data_sheet, resonances
+from slosh_cli.wagon.torque import moved_mass, total_mass
 
 
 def test_the_half_filled_wagon_by_hand(shipped):
@@ -17,17 +21,114 @@ def test_the_half_filled_wagon_by_hand(shipped):
     centre = tank.bottom_height + 1.5 - 4 * 1.5 / (3 * math.pi)
     radius = wagon.wheelset.wheel_radius
     empty = 21.3 * wagon.car_body.centre_height + 3.6 * wagon.bogie.centre_height + 5.6 * radius
-    assert sheet == pytest.approx(
-        {
-            "tank_volume_m3": full,
-            "liquid_volume_m3": load,
-            "ullage_m3": load,
-            "payload_t": load,
-            "gross_mass_t": gross,
-            "axle_load_front_t": gross / 4,
-            "axle_load_rear_t": gross / 4,
-            "centre_of_gravity_m": (empty + load * centre) / gross,
-            "tau": 8 * scenario.braking.torque / radius / (gross * 1e3 * 9.81),
-        },
-        rel=1e-9,
-    )
+    tau = 8 * scenario.braking.torque / radius / (gross * 1e3 * 9.81)
+    known = {
+        "tank_volume_m3": full,
+        "liquid_volume_m3": load,
+        "ullage_m3": load,
+        "degree_of_filling": 0.5,
+        "fill": 0.5,
+        "payload_t": load,
+        "gross_mass_t": gross,
+        "axle_load_front_t": gross / 4,
+        "axle_load_rear_t": gross / 4,
+        "centre_of_gravity_m": (empty + load * centre) / gross,
+        "tau": tau,
+        "tau_initial": tau,
+        "tau_near_rest": tau,
+        "filling_time_s": 0.0,
+    }
+    assert {name: sheet[name] for name in known} == pytest.approx(known, rel=1e-9)
+
+
+FREE = "wagon.running_resistance={constant: 0 N, linear: 0 N s/m, quadratic: 0 N s^2/m^2}"
+TO_REST = (FREE, "braking.stop_speed=0.1 mm/s", "braking.onset=0 s")
+CAST_IRON = "braking.blocks={count: 2, force: 20 kN, friction: cast-iron}"
+
+
+def test_the_point_mass_in_closed_form(shipped):
+    """A step `V^2/(2 A)`, linear over tau `+ V tau/2 - A tau^2/24`, on a slope `V^2/(2 (A + g i M/M_eff))`."""
+    wagon = shipped("paper_80_solid", *TO_REST)
+    speed, force = 80 / 3.6, 8 * 5e3 / 0.46
+    slowing = force / moved_mass(wagon)
+    step = speed**2 / (2 * slowing)
+    assert data_sheet(wagon)["stopping_distance_m"] == pytest.approx(step, rel=1e-7)
+    assert data_sheet(wagon)["mean_deceleration_m_s2"] == pytest.approx(slowing, rel=1e-7)
+    linear = wagon.with_({"braking.application": "{form: linear, time: 4 s}"})
+    assert data_sheet(linear)["stopping_distance_m"] == pytest.approx(step + 2 * speed - slowing * 16 / 24, rel=1e-7)
+    assert data_sheet(linear)["filling_time_s"] == pytest.approx(3.8)
+    uphill = wagon.with_({"track.gradient": 0.02})
+    pull = 9.81 * 0.02 * total_mass(wagon) / moved_mass(wagon)
+    assert data_sheet(uphill)["stopping_distance_m"] == pytest.approx(speed**2 / 2 / (slowing + pull), rel=1e-7)
+
+
+def test_a_cast_iron_brake_fades_at_speed_and_bites_near_rest(shipped):
+    wagon = shipped("paper_80_solid", *TO_REST, CAST_IRON)
+    sheet = data_sheet(wagon)
+
+    def friction(speed):
+        return 0.6 * (1.62 * 20 + 100) / (8.1 * 20 + 100) * (3.6 * speed + 100) / (18 * speed + 100)
+
+    weight = total_mass(wagon) * 9.81
+    assert sheet["tau_near_rest"] == pytest.approx(8 * 2 * 20e3 * friction(0) / weight)
+    assert sheet["tau_initial"] == pytest.approx(8 * 2 * 20e3 * friction(80 / 3.6) / weight)
+    way = quad(lambda v: v * moved_mass(wagon) / (16 * 20e3 * friction(v)), 0, 80 / 3.6)[0]
+    assert sheet["stopping_distance_m"] == pytest.approx(way, rel=1e-6)
+    assert sheet["tau"] == pytest.approx(moved_mass(wagon) * (80 / 3.6) ** 2 / 2 / way / weight, rel=1e-6)
+
+
+def test_the_point_mass_stops_as_the_wagon_does(stop):
+    """Filled blocks, resistance and a slope that changes: the wagon has slip and pitch on top, a part of 1e-3."""
+    slope = "track.gradient=[[0 m, 0.0], [100 m, 0.01]]"
+    run = stop("paper_80_solid", "tank.liquid.model=rigid", CAST_IRON, "braking.application=P", slope)
+    assert data_sheet(run.scenario)["stopping_distance_m"] == pytest.approx(run.braking_distance_m, rel=1e-3)
+
+
+def test_what_never_stops_has_no_distance(shipped):
+    sheet = data_sheet(shipped("paper_80_solid", "braking.torque=1 N m", "track.gradient=-0.03"))
+    assert sheet["stopping_distance_m"] is sheet["mean_deceleration_m_s2"] is None
+
+
+def test_bounce_and_pitch_of_bodies_on_springs(shipped):
+    """Car on bogies on springs; with all centres at the height of the axles and hardly a load nothing else moves."""
+    level = ("wagon.traction_height=0.46 m", "wagon.car_body.centre_height=0.46 m", "wagon.bogie.centre_height=0.46 m")
+    light = ("tank.fill=0.02", "tank.liquid.density=50 kg/m^3", "tank.bottom_height=0 m")
+    scenario = shipped("paper_80_solid", *level, *light)
+    car, bogie, half = 0.5 * 21.3e3, 0.5 * 1.8e3, 6.0
+    soft, stiff = 6.0e6, 2.6e6
+
+    def lowest(mass, stiffness):
+        return math.sqrt(eigh(stiffness, np.diag(mass), eigvals_only=True)[0]) / (2 * math.pi)
+
+    ends = 2 * soft + 4 * stiff
+    bounce = lowest([car, 2 * bogie], [[2 * soft, -2 * soft], [-2 * soft, ends]])
+    turn = 2 * soft * half
+    pitch = lowest([0.5 * 4.6e5, 2 * bogie], [[turn * half, turn], [turn, ends]])
+    sheet = data_sheet(scenario)
+    assert sheet["bounce_frequency_Hz"] == pytest.approx(bounce, rel=1e-3)
+    assert sheet["pitch_frequency_Hz"] == pytest.approx(pitch, rel=1e-3)
+
+
+def test_the_slosh_period_is_that_of_the_modes_in_use(shipped):
+    assert data_sheet(shipped("paper_80"))["slosh_period_s"] == pytest.approx(2 * math.pi / 0.69)
+    computed = data_sheet(shipped("paper_80_solid"))["slosh_period_s"]
+    assert computed == pytest.approx(data_sheet(shipped("tank_wagon"))["slosh_period_s"], rel=1e-3)
+    halves = ("tank.liquid.model=shallow-water", "tank.baffles=[{position: 7.75 m, opening: 0}]")
+    assert data_sheet(shipped("tank_wagon", *halves))["slosh_period_s"] < 0.7 * computed
+
+
+@pytest.mark.parametrize(
+    ("known", "said"),
+    [
+        ({"filling_time_s": 4.1}, "near the slosh period of 4.0 s: a build-up over a whole multiple"),
+        ({"filling_time_s": 24.3}, "near 6 times the slosh period"),
+        ({"filling_time_s": 6.0}, ""),
+        ({"filling_time_s": 0.0}, ""),
+        ({"bounce_frequency_Hz": 0.26}, "bounce at 0.26 Hz is near the first slosh frequency of 0.25 Hz"),
+        ({"pitch_frequency_Hz": 2.5}, ""),
+    ],
+)
+def test_a_build_up_or_a_frequency_near_the_slosh_period_is_told(known, said):
+    told = resonances({"slosh_period_s": 4.0, **known})
+    assert (said in told[0]) if said else not told
+    assert resonances({"slosh_period_s": None, **known}) == []

@@ -23,7 +23,11 @@ SLIPS = [
         "overhangs them by 6.75 m",
         ("tank.length=25 m", "wagon.pivot_spacing=11.5 m", "tank.liquid.density=500 kg/m^3"),
     ),
-    ("mass of a thin tank shell over that of the car body", "less than the bare shell", ("wagon.car_body.mass=2 t",)),
+    (
+        "mass of a thin tank shell over that of the car body",
+        "less than the bare shell",
+        ("wagon.car_body.mass=2 t", "braking.torque=3 kN m"),
+    ),
     (
         "change of the rail's deflection by the ends of its domain",
         "Write a track.domain.length of `36 m` or more",
@@ -67,11 +71,12 @@ def test_axle_load_by_hand(shipped):
 
 def test_limits_of_railways_state_source_and_standing(shipped):
     """EN 14363 sets its 0.6 for twisted track at low speed, not for braking."""
-    told = Extent(unloading=0.7, lifts=0, pitched=False, residual=0.0, residual_cause="", locked=(0.0,) * 4)
+    told = Extent(unloading=0.7, lifts=0, pitched=False, residual=0.0, residual_cause="", unloading_limit=0.6)
     verdicts = [check.as_dict() for check in (*wagon_checks(shipped("paper_80")), *checks(told))]
     stated = {found["check"]: (found["standing"], found["source"]) for found in verdicts if found["standing"]}
     assert {name: standing for name, (standing, _) in stated.items()} == {
         "axle load in t": "standard",
+        "brake force over weight (tau)": "indicative",
         "wheel unloading": "indicative",
     }
     assert "EN 15528" in stated["axle load in t"][1]
@@ -132,7 +137,7 @@ def test_a_residual_is_explained_by_its_cause(shipped, overrides, lifts, said):
     """Only where nothing else is wrong is the tolerance to blame."""
     cause = residual_cause(shipped("paper_80_solid", *overrides), lifts)
     assert said in cause
-    extent = Extent(0.1, lifts, False, 2e-3, cause, (0.0,) * 4)
+    extent = Extent(0.1, lifts, False, 2e-3, cause, 0.6)
     assert any(said in text and "2.0e-03" in text for text in warnings_of(checks(extent)))
     assert warnings_of(checks(replace(extent, residual=1e-6, lifts=0))) == []
 

@@ -82,7 +82,9 @@ def test_coefficients_are_transcribed_as_printed(name: str) -> None:
 
 def test_packaged_scenarios() -> None:
     speeds = {"paper-80-liquid": 80, "paper-80-solid": 80, "paper-160-liquid": 160, "paper-160-solid": 160}
-    assert list(packaged_scenarios()) == sorted([*speeds, "kolaei-half", "kolaei-three-quarters", "tank-wagon"])
+    assert list(packaged_scenarios()) == sorted(
+        [*speeds, "block-brake", "kolaei-half", "kolaei-three-quarters", "tank-wagon"]
+    )
     reference = load_scenario(find_packaged("paper-80-liquid"))
     for name, speed in speeds.items():
         found = load_scenario(find_packaged(name))
@@ -125,7 +127,7 @@ def test_what_is_no_name_must_be_a_file(given: str, tmp_path: Path, monkeypatch:
 def test_find_packaged_guesses() -> None:
     with pytest.raises(UsageError, match="given `paper-80-solit`; write `paper-80-solid`"):
         find_packaged("paper-80-solit")
-    with pytest.raises(UsageError, match="write one of kolaei-half, kolaei-three"):
+    with pytest.raises(UsageError, match="write one of block-brake, kolaei-half"):
         find_packaged("zzz")
 
 

@@ -134,7 +134,11 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
     assert schema["then"]["properties"]["tank"]["required"] == ["bottom_height"]
     cylinder = schema["$defs"]["HorizontalCylinder"]
     assert {"shape", "length"} <= set(cylinder["required"])
-    assert cylinder["oneOf"] == [{"required": ["radius"]}, {"required": ["diameter"]}]
+    amounts = [{"required": [key]} for key in ("fill", "volume", "mass", "gross_mass")]
+    assert cylinder["allOf"] == [
+        {"oneOf": [{"required": ["radius"]}, {"required": ["diameter"]}]},
+        {"oneOf": amounts},
+    ]
     assert schema["$defs"]["Contact"]["properties"]["adhesion"]["anyOf"][0] == {"enum": ["dry", "wet"]}
     assert all(not definition["additionalProperties"] for definition in schema["$defs"].values())
 

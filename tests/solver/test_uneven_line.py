@@ -22,12 +22,16 @@ LINES = {
 }
 
 
+CLOSED = {"gradient": 1e-6, "profile": 1e-5, "dips": 1e-6, "level": 1e-6, "spectrum": 1e-6, "flat": 1e-5, "all": 1e-5}
+"""What the ledger may miss: less than a wrong or forgotten work would leave."""
+
+
 @pytest.mark.parametrize("line", LINES)
 @pytest.mark.parametrize("name", ["paper_80_solid", "paper_80"])
 def test_the_ledger_closes(stop, name, line):
     result = stop(name, FAST, *LINES[line])
     assert result.status == "stopped"
-    assert result.energy_residual < 1e-4
+    assert result.energy_residual < CLOSED[line]
     assert result.mean_total_wheel_load_N / result.weight_N == pytest.approx(1.0, abs=3e-4)
 
 
@@ -38,15 +42,14 @@ def test_uneven_rails_hardly_move_the_distance_but_the_loads(stop):
 
 
 def test_no_step_of_an_uneven_rail_takes_a_wheel_past_a_tenth_of_its_waves(stop):
-    even, uneven = stop("paper_80_solid", FAST), stop("paper_80_solid", FAST, *LINES["level"])
-    way = uneven.braking_distance_m + 0.5 * 100 / 3.6
-    assert uneven.steps >= way / 0.15
-    assert even.steps < 400
-    assert uneven.solve_seconds < 0.5
+    coarse = stop("paper_80_solid", FAST, *LINES["level"], "solver.tolerance=1e-2")
+    assert coarse.steps >= (coarse.braking_distance_m + 0.5 * 100 / 3.6) / 0.15
+    assert stop("paper_80_solid", FAST).steps < 400
+    assert stop("paper_80_solid", FAST, *LINES["level"]).solve_seconds < 0.5
 
 
 def test_steps_follow_a_flat_closely(shipped):
-    few = ("solver.time_limit=1 s", "braking.onset=0 s")
+    few = ("solver.time_limit=1 s", "braking.onset=0 s", "solver.tolerance=1e-2")
     flat = simulate(shipped("paper_80_solid", FAST, *few, "wagon.wheel_flats=[{wheel: 4, depth: 1 mm, length: 60 mm}]"))
     turns = 27.0 / (2 * np.pi * 0.46)
     fine = 3 * 0.06 / 27.0 / 5e-5  # steps of 0.05 ms over the flat and twice its length behind it

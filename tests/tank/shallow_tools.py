@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, Section
+from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection, Section
 from slosh_cli.tank.section_table import depth_of, section_at, section_table
 from slosh_cli.tank.shallow import (
     WORK_ROWS,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from shallow_tools import history, liquid_in, moving
 
+from slosh_cli.section import RectangularSection
 from slosh_cli.tank.coefficients import SloshMode
-from slosh_cli.tank.section import RectangularSection
 from slosh_cli.validation.cases import kolaei
 from slosh_cli.validation.data_file import data_rows
 

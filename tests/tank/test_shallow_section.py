@@ -5,7 +5,7 @@ import pytest
 from shallow_tools import HEXAGON, SECTIONS, G, depths, inverse_error, liquid_in, moving, places
 from tank_examples import BOTTLE, THREE_TROUGHS
 
-from slosh_cli.tank.section import PolygonalSection
+from slosh_cli.section import PolygonalSection
 from slosh_cli.tank.section_table import potential_at, pressure_height, section_at
 
 

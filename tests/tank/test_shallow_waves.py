@@ -8,8 +8,8 @@ from scipy.optimize import curve_fit
 from shallow_tools import BOX, CIRCLE, LENGTH, G, history, liquid_in, moving
 from tank_examples import V_TROUGH, box, cylinder, ellipse, polygon
 
+from slosh_cli.section import section_of
 from slosh_cli.tank.coefficients import SloshMode, computed_modes
-from slosh_cli.tank.section import section_of
 from slosh_cli.tank.still import frequency_excess
 from slosh_cli.validation.cases import kolaei
 

@@ -8,11 +8,11 @@ import pytest
 from tank_examples import cylinder
 
 from slosh_cli.scenario import Liquid
+from slosh_cli.section import EllipticalSection
 from slosh_cli.tank import longitudinal
 from slosh_cli.tank.coefficients import computed_modes
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.longitudinal import longitudinal_modes
-from slosh_cli.tank.section import EllipticalSection
 
 LENGTH = 5.75
 

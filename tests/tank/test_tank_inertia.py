@@ -8,12 +8,12 @@ from rigid_part import added_mass, free_masses
 from tank_examples import BOTTLE, V_TROUGH, box, cylinder, ellipse, polygon
 
 from slosh_cli.scenario import Liquid
+from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank import inertia
 from slosh_cli.tank.coefficients import computed_modes
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.inertia import stokes_joukowski_inertia
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.section import liquid_depth, section_of
 
 HARMONICS = 2.0 * np.arange(20000) + 1.0
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from tank_examples import BOTTLE, THREE_TROUGHS, V_TROUGH, regular_polygon
 
+from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection
 from slosh_cli.tank.eigenproblem import HalfSectionElements
 from slosh_cli.tank.errors import TankError
-from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import Side, half_section
 

@@ -8,11 +8,11 @@ import pytest
 from tank_examples import BOTTLE, THREE_TROUGHS, V_TROUGH, box, cylinder, ellipse, polygon, regular_polygon
 
 from slosh_cli.scenario import Liquid
+from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection, liquid_depth, section_of
 from slosh_cli.tank.coefficients import SloshMode, computed_modes, slosh_modes, tank_modes
 from slosh_cli.tank.eigenproblem import HalfSectionElements
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.longitudinal import TOLERANCE, longitudinal_mode, longitudinal_modes
-from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, liquid_depth, section_of
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 from slosh_cli.validation.exact.tank import rectangle, trough

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from tank_examples import BOTTLE, THREE_TROUGHS, V_TROUGH, box, cylinder, ellipse, polygon, regular_polygon
 
+from slosh_cli.outline import cut_below, cut_right, surface_intervals
+from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection, section_of
 from slosh_cli.tank.load import frozen_load
-from slosh_cli.tank.outline import cut_below, cut_right, surface_intervals
-from slosh_cli.tank.section import EllipticalSection, PolygonalSection, RectangularSection, section_of
 
 FILLS = (0.02, 0.1, 0.25, 0.5, 0.77, 0.98)
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from slosh_cli.section import EllipticalSection, RectangularSection
 from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
-from slosh_cli.tank.section import EllipticalSection, RectangularSection
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 from slosh_cli.validation.data_file import data_rows

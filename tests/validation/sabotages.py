@@ -225,7 +225,7 @@ SABOTAGES: dict[str, Sabotage] = {
         "braked weight 65 %",
     ),
     "stopping_table_gradient": edit(
-        "stopping-table", "solver.setup", "_line", "pull=-STANDARD", "pull=STANDARD", "1 in 100 up"
+        "stopping-table", "solver.setup", "_line", "0.0 - STANDARD_GRAVITY *", "STANDARD_GRAVITY *", "1 in 100 up"
     ),
     "stopping_table_deceleration": edit(
         "stopping-table",

@@ -2,6 +2,7 @@
 
 import csv
 import importlib.util
+import math
 import re
 from pathlib import Path
 
@@ -32,6 +33,11 @@ def hooks():
 @pytest.fixture(scope="module")
 def identifiability():
     return script("identifiability")
+
+
+@pytest.fixture(scope="module")
+def real_brakes():
+    return script("real_brakes")
 
 
 def stored_rows():
@@ -147,6 +153,33 @@ def test_a_row_of_the_identifiability_table_is_what_sweep_gives_today(identifiab
     stored = stored_rows()[row]
     found = identifiability.examined(tmp_path / "study", tuple(filter(None, stored["changed"].split("; "))))
     assert {key: str(value) for key, value in found.items()} == {key: stored[key] for key in found}
+
+
+def test_the_page_of_real_brakes_is_that_of_its_table(real_brakes):
+    rows = real_brakes.read()
+    choices = (real_brakes.FILLS, real_brakes.BRAKES, real_brakes.LAMBDAS, real_brakes.APPLICATIONS, real_brakes.RAILS)
+    assert len(rows) == math.prod(map(len, (*choices, real_brakes.GRADIENTS, real_brakes.LIQUIDS)))
+    assert len({(real_brakes.conditions(row), row["liquid"]) for row in rows}) == len(rows)
+    assert (DOCS / "real-brakes.md").read_text(encoding="utf-8") == real_brakes.page(rows)
+
+
+@pytest.mark.parametrize("fill", [0.4, 0.9])
+def test_rows_of_the_table_of_real_brakes_are_what_a_run_gives_today(real_brakes, fill):
+    wagon = real_brakes.loaded(fill)
+    for row in real_brakes.read():
+        asked = row["fill"] == f"{fill:g}" and row["liquid"] != "shallow-water" and row["application"] == "P"
+        if not asked or row["lambda"] not in ("50", "100"):
+            continue
+        stored = dict(row)
+        force = real_brakes.force_for(wagon, row["brake"], float(row["lambda"]))
+        changes = {
+            "braking.application": "P", "contact.adhesion": row["rail"], "track.gradient": float(row["gradient"]),
+            "tank.liquid.model": row["liquid"],
+        }  # fmt: skip
+        found = real_brakes.examined(({}, real_brakes.braked(wagon, row["brake"], force, **changes)))
+        for name, text in found.items():
+            told = stored[name]
+            assert text == told or float(text) == pytest.approx(float(told), rel=1e-4, abs=1e-3), (row, name)
 
 
 def test_what_the_findings_say_in_prose(stop):

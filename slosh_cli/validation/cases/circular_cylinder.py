@@ -6,9 +6,9 @@ from math import pi, sqrt
 
 from slosh_cli.scenario import HorizontalCylinder, Liquid
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import EllipticalSection
 from slosh_cli.tank import coefficients
 from slosh_cli.tank.eigenproblem import HalfSectionElements, Parity
-from slosh_cli.tank.section import EllipticalSection
 from slosh_cli.tank.triangulation import triangulate
 from slosh_cli.tank.wetted import half_section
 from slosh_cli.validation.case import Findings, Outcome

@@ -9,9 +9,9 @@ import numpy as np
 
 from slosh_cli.arrays import Array
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import RectangularSection
 from slosh_cli.tank import shallow
 from slosh_cli.tank.coefficients import SloshMode
-from slosh_cli.tank.section import RectangularSection
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.validation.case import Findings, Outcome
 from slosh_cli.validation.cases import kolaei

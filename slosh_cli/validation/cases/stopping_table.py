@@ -84,7 +84,7 @@ def _stops(data: CaseData, speed: float, grade: float, deceleration: float, equi
     words = (*data.reference["stiff"], braking, f"track.gradient={1 / grade if grade else 0.0:.12f}")
     case = scenario(data.reference["scenario"], *words)
     wagon = point_wagon(case)
-    pull = STANDARD_GRAVITY * case.track.gradient * wagon.mass / (wagon.mass + wagon.rotating_mass)
+    pull = STANDARD_GRAVITY * case.track.gradient_points[0][1] * wagon.mass / (wagon.mass + wagon.rotating_mass)
     exact = ramped_stop(speed * _KM_H, deceleration, 2 * equivalent, pull)
     return distance(stop(data.reference["scenario"], *words)), exact
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, cast
 
-from slosh_cli.tank.outline import Loop, counter_clockwise, cut_below, moments, surface_intervals
+from slosh_cli.outline import Loop, counter_clockwise, cut_below, moments, surface_intervals
 
 
 class Section(Protocol):
@@ -198,3 +198,16 @@ def section_of(tank: TankGeometry) -> Section:
 def liquid_depth(tank: TankGeometry) -> float:
     """Depth of the still liquid above the tank's lowest point, m."""
     return tank.fill * section_of(tank).height
+
+
+def depth_of_area(section: Section, area: float) -> float:
+    """Depth (m) at which a section has a wetted `area` (m^2): the inverse of `Section.area`, clipped to the section."""
+    if area <= 0.0 or area >= section.area(section.height):
+        return 0.0 if area <= 0.0 else section.height
+    if isinstance(section, RectangularSection):
+        return area / section.width
+    from scipy.optimize import brentq
+
+    height = section.height
+    found = brentq(lambda depth: section.area(depth) - area, 0.0, height, xtol=1e-15 * height, rtol=1e-15)
+    return float(found)
