@@ -91,7 +91,10 @@ def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> t
 
     Raises SloshError where the physics refuses it.
     """
-    vehicles, first = _of_one_kind([_vehicle(scenario) for scenario in scenarios]), scenarios[0]
+    lengths = np.array([scenario.wagon.length_in_train for scenario in scenarios])
+    behind = np.cumsum(lengths) - 0.5 * (lengths + lengths[0])
+    found = [_vehicle(scenario, way) for scenario, way in zip(scenarios, behind, strict=True)]
+    vehicles, first = _of_one_kind(found), scenarios[0]
     most_missing = max(_LEAST_MISSING, first.solver.tolerance / 3)
     places = np.array([vehicle.wagon.coupling_row @ vehicle.points[0].q for vehicle in vehicles])
     law = couplings(coupling, np.diff(places), HALF) if coupling and len(vehicles) > 1 else None
@@ -110,15 +113,16 @@ def _of_one_kind(vehicles: list[Vehicle]) -> tuple[Vehicle, ...]:
     return tuple(v if isinstance(v.liquid, ModalLiquid) else v.replaced(liquid=still) for v in vehicles)
 
 
-def _vehicle(scenario: Scenario) -> Vehicle:
-    """The wagon of `scenario` at t = 0."""
+def _vehicle(scenario: Scenario, behind: float) -> Vehicle:
+    """The wagon of `scenario` at t = 0, its centre `behind` (m) that of the first vehicle."""
     load = frozen_load(scenario.tank)
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
     liquid = _liquid(scenario, wagon)
     ahead = wheel_positions(scenario.wagon)
     rail = _rail(_computed_track(scenario), tuple(ahead))
-    surface = rolling_surface(scenario.track.unevenness, scenario.wagon.wheel_flats, ahead, wagon.wheel_radius)
+    flats = scenario.wagon.wheel_flats
+    surface = rolling_surface(scenario.track.unevenness, flats, ahead - behind, wagon.wheel_radius)
     contact = contact_model(scenario.contact, wagon.wheel_radius, surface)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
@@ -128,21 +132,22 @@ def _vehicle(scenario: Scenario) -> Vehicle:
         liquid,
         rail,
         contact,
-        _line(scenario),
+        _line(scenario, behind),
         brake_of(scenario),
         _scales(scenario, wagon, liquid, start),
         start,
     )
 
 
-def _line(scenario: Scenario) -> Line:
+def _line(scenario: Scenario, behind: float) -> Line:
     resistance, points = scenario.wagon.running_resistance, np.array(scenario.track.gradient_points)
     pulls = 0.0 - STANDARD_GRAVITY * points[:, 1]
     return Line(
         resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
         pull=float(pulls[0]),
-        places=points[:, 0].copy(),
+        places=points[:, 0] + behind,
         pulls=pulls,
+        standing=0.0,
     )
 
 
