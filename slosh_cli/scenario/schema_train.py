@@ -3,84 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 from pydantic import Field
 
-from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Leaf, Quantity, Range
+from slosh_cli.scenario.leaves import Quantity, Range
+from slosh_cli.scenario.points import Points
 from slosh_cli.scenario.rules import Finding, Values
-from slosh_cli.scenario.units import at_least, plain, shown
+from slosh_cli.scenario.units import at_least, shown
 
-_LENGTH: Final = Quantity("length", Range(0.0, 10.0), "105 mm")
-_FORCE: Final = Quantity("force", Range(0.0, 1e9), "590 kN")
-_SAMPLE: Final = "[[0 mm, 0 kN], [10 mm, 30 kN], [210 mm, 1180 kN]]"
-_MOST_POINTS: Final = 100
-
-Points = tuple[tuple[float, float], ...]
-"""Travel (m) and force (N) of the corners of a branch, the first one at (0, 0)."""
-
-
-@dataclass(frozen=True)
-class _Branch(Leaf):
-    """Points [travel, force] from [0, 0] on: the travel grows, the force never falls."""
-
-    def sample(self) -> str:
-        return _SAMPLE
-
-    def written(self, value: Any, *, as_text: bool) -> Any:
-        return [[_LENGTH.written(x, as_text=as_text), _FORCE.written(y, as_text=as_text)] for x, y in value]
-
-    def parse(self, value: object) -> Points:
-        return self._read(value, Quantity.parse)
-
-    def parse_python(self, value: object) -> Points:
-        return self._read(value, Quantity.parse_python)
-
-    def _read(self, value: object, read: Any) -> Points:
-        rule, fix = "must be a list of points [travel, force]", f"write points, such as `{_SAMPLE}`"
-        if not isinstance(value, list | tuple) or not 2 <= len(value) <= _MOST_POINTS:
-            raise ValueRefused(f"{rule}, two to {_MOST_POINTS} of them", plain(value), fix)
-        points = []
-        for number, point in enumerate(value, start=1):
-            if not isinstance(point, list | tuple) or len(point) != 2:
-                raise ValueRefused(f"{rule}, but point {number} is not", plain(point), fix)
-            try:
-                points.append((read(_LENGTH, point[0]), read(_FORCE, point[1])))
-            except ValueRefused as refused:
-                raise ValueRefused(f"{refused.rule} at point {number}", refused.given, refused.fix) from None
-        _check_points(points)
-        return tuple(points)
-
-    def json_schema(self) -> dict[str, Any]:
-        pair = {"type": "array", "prefixItems": [_LENGTH.json_schema(), _FORCE.json_schema()], "minItems": 2}
-        return {"type": "array", "items": pair | {"maxItems": 2}, "minItems": 2, "maxItems": _MOST_POINTS}
+_BRANCH: Final = Points(
+    Quantity("length", Range(0.0, 10.0), "105 mm"),
+    Quantity("force", Range(0.0, 1e9), "590 kN"),
+    "[[0 mm, 0 kN], [10 mm, 30 kN], [210 mm, 1180 kN]]",
+    least=2,
+    first=0.0,
+)
+Branch = tuple[tuple[float, float], ...]
+"""Travel (m) and force (N) of the corners of a coupling's branch, the first one at (0, 0)."""
 
 
-def _check_points(points: list[tuple[float, float]]) -> None:
-    if points[0] != (0.0, 0.0):
-        given = f"a first point at {_at(points[0])}"
-        raise ValueRefused("must begin without travel and force", given, "write `[0 mm, 0 kN]` as the first point")
-    for before, after in pairwise(points):
-        if after[0] <= before[0]:
-            given = f"{_at(after)} after {_at(before)}"
-            raise ValueRefused("must have points of growing travel", given, "sort the points by their travel")
-        if after[1] < before[1]:
-            given = f"{_at(after)} after {_at(before)}"
-            raise ValueRefused("must have forces that never fall", given, f"write `{shown(before[1])} N` or more there")
-
-
-def _at(point: tuple[float, float]) -> str:
-    return f"[{shown(point[0])} m, {shown(point[1])} N]"
-
-
-def force_at(points: Points, travel: float) -> float:
+def force_at(points: Branch, travel: float) -> float:
     """Force (N) of a branch at a `travel` (m) of zero or more; its last line goes on."""
     (x, y), (x_after, y_after) = next((pair for pair in pairwise(points) if travel < pair[1][0]), points[-2:])
     return y + (y_after - y) / (x_after - x) * (travel - x)
+
+
+def _never_falls(v: Values) -> Iterator[Finding]:
+    for key in ("loading", "unloading"):
+        points = v.get(key, ((0.0, 0.0),))
+        if points[0][1] != 0.0:
+            given = f"`{shown(points[0][1])} N` without travel"
+            yield Finding((key,), "must begin without force", given, "write `[0 mm, 0 kN]` as the first point")
+        for number, (before, after) in enumerate(pairwise(points), 2):
+            if after[1] < before[1]:
+                rule, given = f"must never fall, but point {number} does", f"`{shown(after[1])} N`"
+                yield Finding((key,), rule, given, f"write `{at_least(before[1])} N` or more there")
 
 
 def _unloading_below(v: Values) -> Iterator[Finding]:
@@ -100,10 +60,10 @@ def _unloading_below(v: Values) -> Iterator[Finding]:
 class Spring(Part):
     """One direction of a coupling: a spring with friction."""
 
-    rules = (_unloading_below,)
+    rules = (_never_falls, _unloading_below)
 
-    loading: Annotated[Points, _Branch()] = Field(description="Travel and force as the force grows, m and N.")
-    unloading: Annotated[Points, _Branch()] = Field(
+    loading: Annotated[Branch, _BRANCH] = Field(description="Travel and force as the force grows, m and N.")
+    unloading: Annotated[Branch, _BRANCH] = Field(
         description="Travel and force as the force goes, m and N; nowhere above loading."
     )
 

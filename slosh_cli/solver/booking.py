@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from slosh_cli.arrays import Cube
 from slosh_cli.compiled import inner_kernel, kernel
-from slosh_cli.method import DIAGONAL, END, GAMMA, MIDDLE, OUTER, START, hermite_weights, parabola_weights, step_extremes
+from slosh_cli.method import (
+    DIAGONAL,
+    END,
+    GAMMA,
+    MIDDLE,
+    OUTER,
+    START,
+    hermite_weights,
+    parabola_weights,
+    step_extremes,
+)
 from slosh_cli.solver.events import SHORTEST_STEP
 from slosh_cli.solver.ledger import settle_losses, settle_residual
 from slosh_cli.solver.record import interpolate

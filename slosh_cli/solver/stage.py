@@ -13,8 +13,8 @@ import math
 from slosh_cli.compiled import inner_kernel, vector_kernel
 from slosh_cli.method import BASE, move
 from slosh_cli.solver.contacts import LOST, OPEN, SOLVED, find_update, take_update
+from slosh_cli.solver.coupled import close_couplings
 from slosh_cli.solver.dense import factor_symmetric, solve_symmetric
-from slosh_cli.solver.train import close_couplings
 from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import prepare_rail, rail_residual
 from slosh_cli.vectors import fill

@@ -5,10 +5,10 @@ from __future__ import annotations
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import BASE, DIAGONAL, END, GAMMA, MIDDLE, OUTER, START, difference, line, predict
 from slosh_cli.solver.contacts import respond
+from slosh_cli.solver.coupled import guess_couplings
 from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
 from slosh_cli.solver.stage import prepare_stage, read_ride, solve_stage
-from slosh_cli.solver.train import guess_couplings
 from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import rail_residual
 from slosh_cli.wagon.model import CAR_PITCH

@@ -141,9 +141,8 @@ class _Account(Block):
 class Vehicle(Block):
     """Constants, state and work space of a vehicle. `points` are its places in a step, in the order of `method.START`.
 
-    `locked`, `airborne` (wheels,) say which wheels slide and which are off the rail, `turning` (wheels,) which way those
-    turn that do not slide: 1 forward, -1 back. `coupling_force` (N, of the half vehicle, forward) acts at the coupling
-    points.
+    `locked`, `airborne` (wheels,) say which wheels slide and which are off the rail, `turning` (wheels,) which way the
+    others turn: 1 forward, -1 back. `coupling_force` (N, of the half vehicle, forward) acts at the coupling points.
     """
 
     wagon: WagonModel

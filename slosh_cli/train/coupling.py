@@ -12,7 +12,7 @@ from slosh_cli.arrays import Integers, Matrix, Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import DIAGONAL, END, MIDDLE, OUTER, START, step_extremes
-from slosh_cli.scenario.schema_train import Coupling, Points
+from slosh_cli.scenario.schema_train import Branch, Coupling
 
 _ON_A_BRANCH = 1e-9
 """A spring is on a branch when it is this close to it, as a part of how far the branches are apart."""
@@ -190,6 +190,6 @@ def _law(coupling: Coupling | None) -> tuple[Matrix, Matrix, float, float]:
     return line, line, stiffness, coupling.linear.damping if coupling and coupling.linear else 0.0
 
 
-def _joined(tension: Points, compression: Points) -> Matrix:
+def _joined(tension: Branch, compression: Branch) -> Matrix:
     """One branch (2, points) of the tables of tension, mirrored, and of compression, which share (0, 0)."""
     return np.concatenate([-np.array(tension)[:0:-1], np.array(compression)]).T
