@@ -20,6 +20,9 @@ _RATE_SHARE = 1e-2
 """Of a rate of compression (m/s) in an event's value: springs that turn slower than 1e-4 m/s need no step's end, as the
 part of the compression that they miss is below 1e-7 m."""
 
+COUPLING_COLUMNS = 2
+"""Numbers at the end of a row of the history: force and compression of the coupling behind the vehicle."""
+
 
 @inner_kernel
 def _branch(places, forces, compression):
