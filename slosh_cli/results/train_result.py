@@ -3,6 +3,7 @@
 # ruff: noqa: N815  (units such as N keep their case in the names that files and scripts rely on)
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -31,8 +32,8 @@ class VehicleResult(Answers):
         "s", "when the brake wave reaches the vehicle", Place.CONDITIONS, given="braking.onset", shown=_TOLD)
     distance_m: float = computed("m", "way of the vehicle since its onset", Place.DISTANCE, shown=_TOLD)
     liquid_model: str = derived(
-        "", "model of the load: rigid, modal or shallow-water", Place.CONDITIONS, given="tank.liquid.model", shown=_TOLD,
-        column="liquid")
+        "", "model of the load: rigid, modal or shallow-water", Place.CONDITIONS, given="tank.liquid.model",
+        shown=_TOLD, column="liquid")
     max_surface_m: float = computed("m", "largest rise of the free surface at an end wall", Place.SURFACE, shown=_TOLD)
     surface_limit_m: float = computed("m", "room above the still surface", Place.SURFACE, shown=_TOLD)
     min_wheel_load_N: PerWheel = computed("N", "least load since the onset", Place.WHEELS, shown=_TOLD)
@@ -120,6 +121,17 @@ class TrainResult(Answers):
         found = self.as_dict()
         return found | {"warnings": [*found["warnings"], *([self.reason] if self.reason else [])]}
 
+    @property
+    def history(self) -> "TrainHistory":
+        """What figures show of the train."""
+        couplings = ({"force": one.force, "compression": one.compression} for one in self.couplings)
+        return TrainHistory(
+            self.name,
+            self.time,
+            tuple(StoredPart(one.as_attributes(), one.channels) for one in self.vehicles),
+            tuple(StoredPart(one.as_attributes(), found) for one, found in zip(self.couplings, couplings, strict=True)),
+        )
+
     def to_frame(self) -> "pd.DataFrame":
         """Answers of the vehicles, one row each, counted from 1 at the front."""
         import pandas as pd
@@ -133,6 +145,24 @@ class TrainResult(Answers):
 
         found = {number: one.force for number, one in enumerate(self.couplings, 1)}
         return pd.DataFrame(found, index=pd.Index(self.time, name="time"))
+
+
+@dataclass(frozen=True, eq=False)
+class StoredPart:
+    """A vehicle or a coupling of a train as its file has it: answers by name, histories by channel name."""
+
+    facts: Mapping[str, Any]
+    channels: Mapping[str, Vector]
+
+
+@dataclass(frozen=True, eq=False)
+class TrainHistory:
+    """What figures show of a train: its name, `time` (n,) s, vehicles and couplings from the front."""
+
+    name: str
+    time: Vector
+    vehicles: tuple[StoredPart, ...]
+    couplings: tuple[StoredPart, ...]
 
 
 def _derive(record: Any) -> None:

@@ -117,7 +117,9 @@ class TrainScenario:
         return "---\n".join([scenario_to_yaml(self.file), *kinds])
 
 
-class _Wish(NamedTuple):  # an override of vehicles: the place from the front or None for all, key path, value, as written
+class _Wish(
+    NamedTuple
+):  # an override of vehicles: the place from the front or None for all, key path, value, as written
     place: int | None
     key: str
     value: str
