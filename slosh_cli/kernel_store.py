@@ -22,7 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
-PARTS: Final = ("tank", "wagon", "track", "solver")
+PARTS: Final = ("tank", "wagon", "track", "train", "solver")
 """Packages with kernels, and with the constants and types that kernels use."""
 _MODULES: Final = ("compiled", "kernel_store", "arrays", "blocks", "friction", "method", "vectors")
 """Modules beside them that decide about machine code."""

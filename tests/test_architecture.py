@@ -17,6 +17,7 @@ ORDER = [
     {"tank"},
     {"wagon"},
     {"track"},
+    {"train"},
     {"solver"},
     {"results"},
     {"study"},

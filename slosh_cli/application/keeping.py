@@ -11,6 +11,7 @@ from slosh_cli.errors import SloshError
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
+    from slosh_cli.scenario.train_file import TrainScenario
 
 _OUTPUTS: Final = Path("outputs")
 _LONGEST: Final = 80
@@ -101,7 +102,7 @@ def free_folder(default: Path, fits: Callable[[Path], bool], note: Callable[[str
 
 
 def folder_of_run(
-    scenario: "Scenario | TankScenario",
+    scenario: "Scenario | TankScenario | TrainScenario",
     given: Path | None,
     settings: Sequence[str] | None,
     files: Sequence[str],

@@ -44,6 +44,12 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     what is sound. What is allowed but unlikely, or will lead to overload, locked wheels or a liquid outside its model,
     is warned of.
     """
+    from slosh_cli.scenario.train_file import is_train_file
+
+    if is_train_file(scenario_file):
+        from slosh_cli.cli.train import check_train
+
+        return check_train(scenario_file, overrides, as_json=as_json)
     from slosh_cli.application.stop import outlook
     from slosh_cli.cli.reading import load_given
     from slosh_cli.results.data_sheet import data_sheet, resonances

@@ -26,8 +26,12 @@ def plot_command(
     from slosh_cli.report import FIGURE_NAMES
     from slosh_cli.report.figures import draw_run
     from slosh_cli.results.files import try_targets
-    from slosh_cli.results.hdf5 import read_history
+    from slosh_cli.results.hdf5 import is_train_history, read_history
 
+    if is_train_history(history_file):
+        from slosh_cli.cli.train import plot_train
+
+        return plot_train(history_file, output or history_file.parent)
     history = read_history(history_file)
     folder, keeping = output or history_file.parent, Keeping()
     try_targets(folder, FIGURE_FILES)

@@ -21,11 +21,17 @@ def run_command(
     as_json: AsJson = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figures.")] = False,
 ) -> ExitCode:
-    """Simulate one stop: history (HDF5), summary (CSV) and figures.
+    """Simulate one stop of a wagon or of a train: history (HDF5), summary (CSV) and figures.
 
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.
     """
+    from slosh_cli.scenario.train_file import is_train_file
+
+    if is_train_file(scenario_file):
+        from slosh_cli.cli.train import run_train
+
+        return run_train(scenario_file, output, overrides, as_json=as_json, figures=not no_figures)
     from slosh_cli.application.keeping import Keeping, folder_of_run
     from slosh_cli.application.stop import RUN_FILES, keep_run
     from slosh_cli.cli.keeping import told

@@ -101,6 +101,11 @@ def _fixed_channels() -> tuple[Channel, ...]:
     return (*_WAGON, *bogies, *wheels, _BRAKE, *_LIQUID, *_ENERGY)
 
 
+COUPLING_CHANNELS = (
+    Channel("force", "N", "force of the whole coupling, positive in compression"),
+    Channel("compression", "m", "compression of the coupling since the start"),
+)
+"""What each coupling of a train has."""
 TIME = Channel("time", "s", "time since the start of the run")
 CHANNELS: Mapping[str, Channel] = MappingProxyType({channel.name: channel for channel in _fixed_channels()})
 """Every channel that each run has, in file order. On top come slosh amplitudes, one per mode, and what only some brakes

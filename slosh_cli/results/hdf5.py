@@ -10,24 +10,34 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, NamedTuple
 
 import h5py
 import numpy as np
 
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import MOST_SHOWN
-from slosh_cli.results.channels import TIME, Channel, channel
+from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, replacing
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
+from slosh_cli.results.train_result import StoredPart, TrainHistory, TrainResult
+from slosh_cli.scenario.loader import Root
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
+    from slosh_cli.scenario.train_file import TrainScenario
 
 _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
+_VEHICLE: Final = "vehicle_"
+_COUPLING: Final = "coupling_"
+
+
+class _Group(NamedTuple):
+    channels: Mapping[Channel, Vector]
+    attributes: Mapping[str, Any]
 
 
 def write_history(result: Result, path: Path) -> None:
@@ -40,6 +50,54 @@ def write_history(result: Result, path: Path) -> None:
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
     attributes = {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
     _write(path, result.scenario, result.time, channels, attributes)
+
+
+def write_train(result: TrainResult, path: Path) -> None:
+    """Write the histories of a train's stop, its scenario, its answers and its circumstances to the HDF5 file `path`.
+
+    The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
+    """
+    groups: dict[str, _Group] = {}
+    for number, vehicle in enumerate(result.vehicles, 1):
+        facts = vehicle.as_attributes() | {"scenario": scenario_text(vehicle.scenario)}
+        found = {channel(name): values for name, values in vehicle.channels.items()}
+        groups[f"{_VEHICLE}{number:03d}"] = _Group(found, facts)
+    for number, one in enumerate(result.couplings, 1):
+        found = {info: getattr(one, info.name) for info in COUPLING_CHANNELS}
+        groups[f"{_COUPLING}{number:03d}"] = _Group(found, one.as_attributes())
+    attributes = {"train_format_version": _FORMAT} | _circumstances() | result.as_attributes()
+    _write(path, result.scenario, result.time, {}, attributes, groups)
+
+
+def read_train(path: Path) -> TrainHistory:
+    """Read what `write_train` wrote. Raises FileError where the file is missing, damaged or something else."""
+    with _unreadable(path), h5py.File(path, "r") as file:
+        if file.attrs.get("train_format_version") != _FORMAT:
+            raise FileError(f"{path} is not the history of a train that this version can read", where=str(path))
+        time = np.asarray(file[TIME.name][:], dtype=np.float64)
+        parts = {
+            name: StoredPart(
+                {key: _plain(value) for key, value in group.attrs.items()},
+                {key: np.asarray(group[key][:], dtype=np.float64) for key in group},
+            )
+            for name, group in file.items()
+            if name.startswith((_VEHICLE, _COUPLING))
+        }
+        attributes = {key: _plain(value) for key, value in file.attrs.items()}
+    columns = {f"{name}/{key}": values for name, part in parts.items() for key, values in part.channels.items()}
+    _refuse(path, faults_of_columns(time, columns))
+    vehicles = tuple(part for name, part in sorted(parts.items()) if name.startswith(_VEHICLE))
+    couplings = tuple(part for name, part in sorted(parts.items()) if name.startswith(_COUPLING))
+    return TrainHistory(str(attributes["name"]), time, vehicles, couplings)
+
+
+def is_train_history(path: Path) -> bool:
+    """Whether the file is the history of a train; False where it cannot be read."""
+    try:
+        with h5py.File(path, "r") as file:
+            return "train_format_version" in file.attrs
+    except OSError:
+        return False
 
 
 def write_excitation(
@@ -59,17 +117,16 @@ def write_excitation(
 
 def _write(
     path: Path,
-    scenario: "Scenario | TankScenario",
+    scenario: "Scenario | TankScenario | TrainScenario",
     time: Vector,
     channels: Mapping[Channel, Vector],
     attributes: Mapping[str, Any],
+    groups: "Mapping[str, _Group] | None" = None,
 ) -> None:
     """Write the file; it replaces the one at `path` when all of it is on the disk.
 
     HDF5 does not survive a disk that is full, or ends the process with it; so it never gets to know.
     """
-    from slosh_cli.scenario import scenario_to_yaml
-
     with replacing(path) as temporary, temporary.open("xb+") as target:
         steady = _SteadyFile(target)
         with h5py.File(steady, "w") as file:
@@ -77,7 +134,13 @@ def _write(
             axis.make_scale(TIME.name)
             for info, values in channels.items():
                 _write_channel(file, info, values).dims[0].attach_scale(axis)
-            file.create_dataset(_SCENARIO, data=scenario_to_yaml(scenario), dtype=h5py.string_dtype())
+            for name, group in (groups or {}).items():
+                part = file.create_group(name)
+                for info, values in group.channels.items():
+                    _write_channel(part, info, values).dims[0].attach_scale(axis)
+                for key, value in group.attributes.items():
+                    part.attrs[key] = value
+            file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
             for key, value in attributes.items():
                 file.attrs[key] = value
         if steady.trouble is not None:
@@ -131,24 +194,29 @@ def _refuse(path: Path, faults: Iterable[str]) -> None:
         raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
 
 
-def is_of(path: Path, scenario: "Scenario | TankScenario", settings: str = "") -> bool:
-    """Whether the file at `path` is the history of this scenario under these settings; descriptions do not count."""
+def scenario_text(scenario: "Scenario | TankScenario | TrainScenario") -> str:
+    """The resolved scenario as YAML."""
     from slosh_cli.scenario import scenario_to_yaml
 
+    return scenario_to_yaml(scenario) if isinstance(scenario, Root) else scenario.text
+
+
+def is_of(path: Path, scenario: "Scenario | TankScenario | TrainScenario", settings: str = "") -> bool:
+    """Whether the file at `path` is the history of this scenario under these settings; descriptions do not count."""
     try:
         with h5py.File(path, "r") as file:
             text = file[_SCENARIO][()].decode("utf-8")
             found = str(file.attrs.get("settings", ""))
     except Exception:  # whatever it is, it is no history of ours
         return False
-    return found == settings and _without_words(text) == _without_words(scenario_to_yaml(scenario))
+    return found == settings and _without_words(text) == _without_words(scenario_text(scenario))
 
 
 def _without_words(text: str) -> str:
     return re.sub(r"^(name|description):.*\n(?:[ \t].*\n|\n)*", "", text, flags=re.MULTILINE)
 
 
-def _write_channel(file: h5py.File, info: Channel, values: Vector) -> h5py.Dataset:
+def _write_channel(file: h5py.Group, info: Channel, values: Vector) -> h5py.Dataset:
     dataset = file.create_dataset(info.name, data=values, dtype="<f8")
     dataset.attrs["units"] = info.unit
     dataset.attrs["long_name"] = info.long_name

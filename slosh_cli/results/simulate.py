@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
@@ -19,16 +20,19 @@ from slosh_cli.results.recommendation import Recommendation, recommend, stop_dec
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.slides import Slide, slide_check
+from slosh_cli.results.train_result import CouplingResult, TrainResult, VehicleResult, gathered
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.train_file import TrainScenario
 from slosh_cli.section import section_of
 from slosh_cli.solver import advance
-from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate
-from slosh_cli.solver.setup import ReadyStop, problem
+from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate, mean_speed
+from slosh_cli.solver.setup import ReadyStop, problem, train_problem
 from slosh_cli.solver.vehicle import Vehicle
 from slosh_cli.tank.cells import CellLiquid
 from slosh_cli.track.spectrum import realised_level
+from slosh_cli.train.coupling import COUPLING_COLUMNS
 from slosh_cli.wagon.model import POSITION
 
 _OUTCOMES: Mapping[int, tuple[Status, str]] = {
@@ -113,6 +117,71 @@ def _ending(run: Run, braked: bool) -> tuple[Status, str]:
     return status, reason
 
 
+def simulate_train(
+    train: TrainScenario, *, progress: Progress | None = None, cancel: Cancel | None = None
+) -> TrainResult:
+    """Integrate the stop of a train; the rest as for one stop."""
+    stops = train_problem(train.vehicles, train.file.coupling)
+    run = integrate(stops[0], progress, cancel)
+    first, clock = stops[0].vehicle, run.train.time
+    place, braked = float(first.points[START].q[POSITION]), first.brake.breaks > 0
+    status, reason = _ending(run, braked)
+    stopped = status is Status.STOPPED
+    vehicles = tuple(_of_vehicle(scenario, stop, run) for scenario, stop in zip(train.vehicles, stops, strict=True))
+    return TrainResult(
+        scenario=train,
+        status=status,
+        reason=reason.format(time=clock, speed=mean_speed(run.train)),
+        warnings=gathered([vehicle.checks for vehicle in vehicles]),
+        time=run.rows[:, 0, 0],
+        braking_distance_m=place - first.account.onset_position if stopped else None,
+        braking_time_s=clock - first.account.onset_time if stopped else None,
+        vehicles=vehicles,
+        couplings=_of_couplings(run),
+        energy_residual=run.train.largest_residual,
+        steps=run.train.steps,
+        rejected_steps=run.train.rejected,
+        solve_seconds=run.seconds,
+    )
+
+
+def _of_vehicle(scenario: Scenario, stop: ReadyStop, run: Run) -> VehicleResult:
+    """The answers of one vehicle of a train, its histories made when they are asked for."""
+    vehicle, static_loads = stop.vehicle, _per_wheel(stop.static_loads)
+    place, account, advice = float(vehicle.points[START].q[POSITION]), vehicle.account, _recommended(scenario)
+    check_covered(scenario, place)
+    wheels = _of_wheels(scenario, vehicle, static_loads)
+    return VehicleResult(
+        scenario=scenario,
+        distance_m=place - account.onset_position if vehicle.brake.breaks > 0 else place,
+        max_surface_m=account.surface,
+        surface_limit_m=section_of(scenario.tank).height * (1 - scenario.tank.fill),
+        static_wheel_load_N=static_loads,
+        **{name: wheels[name] for name in ("min_wheel_load_N", "max_wheel_load_N", "locked_time_s")},
+        checks=_verdicts(scenario, stop, run, advice),
+        recorded=partial(channels_of, scenario, vehicle, run.rows[:, stop.place]),
+    )
+
+
+def _of_couplings(run: Run) -> tuple[CouplingResult, ...]:
+    """The answers of the couplings of a train from the front."""
+    law = run.train.couplings
+    return tuple(
+        CouplingResult(
+            max_compression_N=float(law.largest[j]),
+            max_tension_N=float(-law.least[j]),
+            max_compression_m=float(law.nearest[j]),
+            max_tension_m=float(-law.farthest[j]),
+            max_compression_s=float(law.largest_time[j]),
+            max_tension_s=float(law.least_time[j]),
+            energy_taken_J=float(law.taken[j]),
+            force=run.rows[:, j, -COUPLING_COLUMNS],
+            compression=run.rows[:, j, 1 - COUPLING_COLUMNS],
+        )
+        for j in range(law.origin.size)
+    )
+
+
 def _work(stop: ReadyStop) -> dict[str, int]:
     """What was computed, in counts."""
     account = stop.vehicle.account
@@ -151,9 +220,11 @@ def _recommended(scenario: Scenario) -> Recommendation | None:
 
 
 def _verdicts(scenario: Scenario, stop: ReadyStop, run: Run, advice: Recommendation | None) -> tuple[Check, ...]:
-    """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track, its rest."""
+    """All that is to be said of a run: of its liquid, its wheels and ledger, its wagon and track; of a wagon alone, its
+    rest."""
     tank, sentence = scenario.tank, advice.sentence if advice else ""
     liquid, stopped = stop.vehicle.liquid, run.outcome == advance.STOPPED and stop.vehicle.brake.breaks > 0
+    alone = len(stop.train.vehicles) == 1
     flowing = isinstance(liquid, CellLiquid)
     head = max(liquid.deepest - float(liquid.shallow.table.depth[-1]), 0.0) if flowing else 0.0
     motion = Motion(stop.vehicle.account.surface, head)
@@ -164,7 +235,7 @@ def _verdicts(scenario: Scenario, stop: ReadyStop, run: Run, advice: Recommendat
         slide_check(_slides(stop.vehicle.account), scenario),
         *filling_checks(tank, scenario.limits),
         *wagon_checks(scenario),
-        *(rest_checks(scenario, stop) if stopped else ()),
+        *(rest_checks(scenario, stop) if stopped and alone else ()),
     )
 
 

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from slosh_cli.arrays import Cube
 from slosh_cli.compiled import inner_kernel, kernel
-from slosh_cli.method import DIAGONAL, END, GAMMA, MIDDLE, OUTER, START, step_extremes
+from slosh_cli.method import (
+    DIAGONAL,
+    END,
+    GAMMA,
+    MIDDLE,
+    OUTER,
+    START,
+    hermite_weights,
+    parabola_weights,
+    step_extremes,
+)
 from slosh_cli.solver.events import SHORTEST_STEP
 from slosh_cli.solver.ledger import settle_losses, settle_residual
 from slosh_cli.solver.record import interpolate
@@ -72,6 +82,9 @@ def record(train: Train, rows: Cube, step: float, part: float) -> None:
     vehicles, residual = train.vehicles, (1.0 - part) * train.residual_before + part * train.residual
     for k in range(len(vehicles)):
         interpolate(vehicles[k], rows[train.rows, k], train.time, step, part, residual)
+    cubic, parabola = hermite_weights(step, part), parabola_weights(part)
+    for j in range(train.couplings.taken.size):
+        train.couplings.record(j, rows[train.rows, j], cubic, parabola)
     train.rows += 1
 
 
@@ -103,7 +116,7 @@ def accept(train, rows, step):
     vehicles = train.vehicles
     for k in range(len(vehicles)):
         settle_losses(vehicles[k], step)
-    settle_residual(train)
+    settle_residual(train, step)
     _record_step(train, rows, step)
     for k in range(len(vehicles)):
         vehicle, account = vehicles[k], vehicles[k].account
@@ -114,6 +127,7 @@ def accept(train, rows, step):
         copy_point(vehicle.points[END], vehicle.points[START])
         copy(account.energies, account.energies_before)
         copy(account.losses, account.losses_before)
+    train.couplings.accept(train.time + step)
     train.residual_before = train.residual
     train.time += step
     train.middle_at = (GAMMA - 1.0) * step

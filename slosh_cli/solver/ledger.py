@@ -90,9 +90,10 @@ def stored(energies):
 
 
 @inner_kernel
-def settle_residual(train):
-    """What the ledgers of all vehicles miss after a step, over the initial kinetic energy."""
+def settle_residual(train, step):
+    """What the ledgers of all vehicles and couplings miss after a `step` (s), over the initial kinetic energy."""
     vehicles, total = train.vehicles, -train.total_start
+    total += train.couplings.half * train.couplings.settle(step)
     for k in range(len(vehicles)):
         energies, losses = vehicles[k].account.energies, vehicles[k].account.losses
         total += stored(energies)

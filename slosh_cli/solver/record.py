@@ -94,10 +94,11 @@ def _interpolate_wheels(vehicle, row, time, cubic, parabola):
         heave, angle = row[1 + wagon.first_wheel + i], row[1 + wagon.first_spin + i]
         normal, _ = contact.normal_force(contact.approach(i, rail, heave, row[1], angle))
         creep = _recorded_creep(vehicle, i, normal, speed - radius * spin, speed, parabola)
-        torque, _ = vehicle.brake.torque(i, time, spin)
+        way = vehicle.turning[i]
+        torque, _ = vehicle.brake.torque(i, time, way * spin)
         row[first + i] = normal
         row[first + wheels + i] = creep
-        row[first + 2 * wheels + i] = creep * radius if vehicle.locked[i] else torque
+        row[first + 2 * wheels + i] = creep * radius if vehicle.locked[i] else way * torque
         row[first + 3 * wheels + i] = rail
         row[first + 4 * wheels + i] = torque
         row[first + 5 * wheels + i] = vehicle.brake.share(i, time)

@@ -18,6 +18,7 @@ from slosh_cli.solver.setup import ReadyStop
 from slosh_cli.solver.train import Train
 from slosh_cli.solver.vehicle import FOUNDATION
 from slosh_cli.tank.cells import CellLiquid
+from slosh_cli.train.coupling import COUPLING_COLUMNS
 
 Progress = Callable[[float, float], None]
 """Called now and then with the fraction done (0 to 1) and the speed in m/s."""
@@ -71,7 +72,7 @@ def integrate(problem: ReadyStop, progress: Progress | None = None, cancel: Canc
         if cancel is not None and cancel.is_set():
             raise Cancelled
         if progress is not None:
-            progress(_fraction(train), _speed(train))
+            progress(_fraction(train), mean_speed(train))
     seconds = time.perf_counter() - began
     _record_end(train, buffer)
     if outcome == loop.STOPPED and _is_ringing(problem):
@@ -91,7 +92,9 @@ def _buffer(train: Train) -> Cube:
     control = train.control
     per_step = int(control.longest_step / control.interval) + 3
     rows = max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, _MOST_ROWS))
-    return np.empty((rows, len(train.vehicles), max(columns_of(vehicle).end for vehicle in train.vehicles)))
+    widest = max(columns_of(vehicle).end for vehicle in train.vehicles)
+    coupled = COUPLING_COLUMNS if train.couplings.origin.size else 0
+    return np.empty((rows, len(train.vehicles), widest + coupled))
 
 
 def _record_end(train: Train, buffer: Cube) -> None:
@@ -101,7 +104,8 @@ def _record_end(train: Train, buffer: Cube) -> None:
         record(train, buffer, 1.0, 0.0)
 
 
-def _speed(train: Train) -> float:
+def mean_speed(train: Train) -> float:
+    """Mean speed (m/s) of the vehicles by their mass."""
     return float(sum(share * v.points[START].v[0] for share, v in zip(train.shares, train.vehicles, strict=True)))
 
 
@@ -120,5 +124,5 @@ def _is_ringing(problem: ReadyStop) -> bool:
 
 def _fraction(train: Train) -> float:
     """How far the run has come: by speed lost or by time, whichever is further."""
-    by_speed = 1.0 - _speed(train) / float(train.vehicles[0].scales.speed[0])
+    by_speed = 1.0 - mean_speed(train) / float(train.vehicles[0].scales.speed[0])
     return min(max(by_speed, train.time / train.control.time_limit, 0.0), 1.0)

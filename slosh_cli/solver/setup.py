@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,6 +12,7 @@ from slosh_cli.arrays import Vector
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario, Track, Wagon
 from slosh_cli.scenario.rail_reach import computed_lengths
+from slosh_cli.scenario.schema_train import Coupling
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.train import Control, Train, new_train
@@ -25,6 +27,7 @@ from slosh_cli.track.contact import contact_model
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel, critical_speed, rail_model
 from slosh_cli.track.surface import rolling_surface
+from slosh_cli.train.coupling import couplings
 from slosh_cli.wagon.brake import brake_of
 from slosh_cli.wagon.model import CAR_HEAVE, CAR_PITCH, FIRST_BOGIE, POSITION, WagonModel, wagon_model, wheel_positions
 
@@ -37,6 +40,8 @@ _VERTICAL_SHARE = 32.0
 little, and at the default tolerance wheel loads still come out within a few tenths of a per cent."""
 _LONGEST_STEP = 0.25
 """No step is longer than this, s: wheel loads are looked at often enough not to miss their extremes."""
+_STANDING = 1e-4
+"""Vehicles of a train that are slower than this, m/s, count as standing."""
 _FIRST_STEP = 1e-3
 """First step to try, s."""
 _SLOWING = 2.2
@@ -53,18 +58,20 @@ _LEAST_MISSING = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class ReadyStop:
-    """A stop ready to integrate: its train at t = 0, with accelerations still open."""
+    """A stop ready to integrate, as one of its vehicles sees it: the train at t = 0, with accelerations still open."""
 
     train: Train
     static_loads: Vector
-    """Wheel loads of the wagon at t = 0, N, (wheels,)."""
+    """Wheel loads of the vehicle at t = 0, N, (wheels,)."""
     most_missing: float
     """What the ledger may miss where wheels land, as a part of the initial kinetic energy."""
+    place: int = 0
+    """Of the vehicle in the train, from the front."""
 
     @property
     def vehicle(self) -> Vehicle:
-        """The wagon: the train's one vehicle."""
-        return self.train.vehicles[0]
+        """The vehicle: a wagon alone is the train's one."""
+        return self.train.vehicles[self.place]
 
     @property
     def weight(self) -> float:
@@ -75,21 +82,47 @@ class ReadyStop:
 
 def problem(scenario: Scenario) -> ReadyStop:
     """Build the stop that `scenario` describes; raises SloshError where the physics refuses it."""
-    vehicle = _vehicle(scenario)
-    most_missing = max(_LEAST_MISSING, scenario.solver.tolerance / 3)
-    train = new_train((vehicle,), _control(scenario), _FIRST_STEP)
-    return ReadyStop(train, vehicle.points[0].normal.copy(), most_missing)
+    return train_problem((scenario,), None)[0]
 
 
-def _vehicle(scenario: Scenario) -> Vehicle:
-    """The wagon of `scenario` at t = 0."""
+def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> tuple[ReadyStop, ...]:
+    """Build the stop of a train of such vehicles from the front, as each of them sees it; what is said once for a run,
+    its solver, output and speeds, is the first one's. Without a `coupling` they know nothing of each other.
+
+    Raises SloshError where the physics refuses it.
+    """
+    lengths = np.array([scenario.wagon.length_in_train for scenario in scenarios])
+    behind = np.cumsum(lengths) - 0.5 * (lengths + lengths[0])
+    found = [_vehicle(scenario, way) for scenario, way in zip(scenarios, behind, strict=True)]
+    vehicles, first = _of_one_kind(found), scenarios[0]
+    most_missing = max(_LEAST_MISSING, first.solver.tolerance / 3)
+    places = np.array([vehicle.wagon.coupling_row @ vehicle.points[0].q for vehicle in vehicles])
+    law = couplings(coupling, np.diff(places), HALF) if coupling and len(vehicles) > 1 else None
+    for vehicle in vehicles if law else ():
+        vehicle.line.standing = _STANDING
+    train = new_train(vehicles, _control(first), _FIRST_STEP, law)
+    loads = [vehicle.points[0].normal.copy() for vehicle in vehicles]
+    return tuple(ReadyStop(train, load, most_missing, place) for place, load in enumerate(loads))
+
+
+def _of_one_kind(vehicles: list[Vehicle]) -> tuple[Vehicle, ...]:
+    """The vehicles with their liquids as blocks of one class, so that they make a list."""
+    if len({vehicle.kind for vehicle in vehicles}) == 1:
+        return tuple(vehicles)
+    still = modal_liquid((), STANDARD_GRAVITY, HALF)
+    return tuple(v if isinstance(v.liquid, ModalLiquid) else v.replaced(liquid=still) for v in vehicles)
+
+
+def _vehicle(scenario: Scenario, behind: float) -> Vehicle:
+    """The wagon of `scenario` at t = 0, its centre `behind` (m) that of the first vehicle."""
     load = frozen_load(scenario.tank)
     flowing = scenario.tank.liquid.model == "shallow-water"
     wagon = _wagon(scenario.wagon, scenario.tank.bottom_height, load, not flowing)
     liquid = _liquid(scenario, wagon)
     ahead = wheel_positions(scenario.wagon)
     rail = _rail(_computed_track(scenario), tuple(ahead))
-    surface = rolling_surface(scenario.track.unevenness, scenario.wagon.wheel_flats, ahead, wagon.wheel_radius)
+    flats = scenario.wagon.wheel_flats
+    surface = rolling_surface(scenario.track.unevenness, flats, ahead - behind, wagon.wheel_radius)
     contact = contact_model(scenario.contact, wagon.wheel_radius, surface)
     _check_mass_matrix(wagon, liquid)
     _check_speed(scenario, rail)
@@ -99,21 +132,22 @@ def _vehicle(scenario: Scenario) -> Vehicle:
         liquid,
         rail,
         contact,
-        _line(scenario),
+        _line(scenario, behind),
         brake_of(scenario),
         _scales(scenario, wagon, liquid, start),
         start,
     )
 
 
-def _line(scenario: Scenario) -> Line:
+def _line(scenario: Scenario, behind: float) -> Line:
     resistance, points = scenario.wagon.running_resistance, np.array(scenario.track.gradient_points)
     pulls = 0.0 - STANDARD_GRAVITY * points[:, 1]
     return Line(
         resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
         pull=float(pulls[0]),
-        places=points[:, 0].copy(),
+        places=points[:, 0] + behind,
         pulls=pulls,
+        standing=0.0,
     )
 
 

@@ -13,6 +13,7 @@ import math
 from slosh_cli.compiled import inner_kernel, vector_kernel
 from slosh_cli.method import BASE, move
 from slosh_cli.solver.contacts import LOST, OPEN, SOLVED, find_update, take_update
+from slosh_cli.solver.coupled import close_couplings
 from slosh_cli.solver.dense import factor_symmetric, solve_symmetric
 from slosh_cli.track.banded import solve_one
 from slosh_cli.track.moving import prepare_rail, rail_residual
@@ -22,6 +23,8 @@ from slosh_cli.wagon.model import CAR_PITCH, FIRST_BOGIE
 
 _MOST_PASSES = 8
 _MOST_UPDATES = 12
+_COUPLING_SHARE = 1e-6
+"""Newton solves coupling forces to this part of the first vehicle's static wheel load."""
 RAIL_SHARE = 1e-5
 """A pass over the rail may leave open this part of the static load, or less at tighter tolerances."""
 
@@ -148,6 +151,8 @@ def _update(train, stage, step, time, first):
             return LOST
         if found == OPEN:
             outcome = OPEN
+    if not close_couplings(train, stage, step, _COUPLING_SHARE * vehicles[0].scales.load):
+        return OPEN
     return outcome
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import BASE, DIAGONAL, END, GAMMA, MIDDLE, OUTER, START, difference, line, predict
 from slosh_cli.solver.contacts import respond
+from slosh_cli.solver.coupled import guess_couplings
 from slosh_cli.solver.dense import solve_symmetric
 from slosh_cli.solver.ledger import balance
 from slosh_cli.solver.stage import prepare_stage, read_ride, solve_stage
@@ -82,6 +83,7 @@ def take_step(train, step):
         _prepare(vehicles[k], step)
         _predict_base(vehicles[k], START, implicit, 0.0, implicit)
         _guess(vehicles[k], MIDDLE, part)
+    guess_couplings(train, MIDDLE, part)
     train.middle_at = 0.0
     if not solve_stage(train, MIDDLE, implicit, time + GAMMA * step):
         return -1.0
@@ -89,6 +91,7 @@ def take_step(train, step):
     for k in range(len(vehicles)):
         _predict_base(vehicles[k], MIDDLE, OUTER * step, OUTER * step, implicit)
         _guess(vehicles[k], END, 1.0 / GAMMA)
+    guess_couplings(train, END, 1.0 / GAMMA)
     if not solve_stage(train, END, implicit, time + step):
         return -1.0
     return _rate(train, step)

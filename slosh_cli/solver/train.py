@@ -7,6 +7,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.solver.vehicle import Vehicle
+from slosh_cli.train.coupling import Couplings, couplings
 
 
 class Control(Block):
@@ -25,7 +26,7 @@ class Control(Block):
 
 
 class Train(Block):
-    """The vehicles of a run and its clock; today's runs have one vehicle.
+    """The vehicles of a run, the couplings between them, and its clock.
 
     `shares` (vehicles,) of the whole mass make the mean speed. `time`, `next_step`, `next_output` s; `middle_at` (s) is
     how long after the start the middle stage stands: before it where it is the last step's, zero where something jumped
@@ -36,6 +37,7 @@ class Train(Block):
     """
 
     vehicles: tuple[Vehicle, ...]
+    couplings: Couplings
     control: Control
     shares: Vector
     stop_values: Vector
@@ -60,13 +62,16 @@ class Train(Block):
     shortened: int
 
 
-def new_train(vehicles: tuple[Vehicle, ...], control: Control, first_step: float) -> Train:
-    """Vehicles from the front at t = 0; the first step to try in s."""
-    masses = np.array([vehicle.wagon.mass[0, 0] for vehicle in vehicles])
+def new_train(
+    vehicles: tuple[Vehicle, ...], control: Control, first_step: float, law: Couplings | None = None
+) -> Train:
+    """Vehicles from the front at t = 0; the first step to try in s. Without a `law` they know nothing of each other."""
+    masses = np.array([-vehicle.wagon.weight[vehicle.wagon.heaves].sum() for vehicle in vehicles])
     return Train.blank(
         vehicles=vehicles,
+        couplings=law if law is not None else couplings(None, np.zeros(0), 0.0),
         control=control,
-        shares=masses / masses.sum(),
+        shares=masses / masses.sum() if len(vehicles) > 1 else np.ones(1),
         stop_values=np.ones(2),
         next_step=first_step,
         last_error=1.0,

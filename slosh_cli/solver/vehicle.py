@@ -141,8 +141,8 @@ class _Account(Block):
 class Vehicle(Block):
     """Constants, state and work space of a vehicle. `points` are its places in a step, in the order of `method.START`.
 
-    `locked`, `airborne` (wheels,) say which wheels slide and which are off the rail. `coupling_force` (N, of the half
-    vehicle, forward) acts at the coupling points.
+    `locked`, `airborne` (wheels,) say which wheels slide and which are off the rail, `turning` (wheels,) which way the
+    others turn: 1 forward, -1 back. `coupling_force` (N, of the half vehicle, forward) acts at the coupling points.
     """
 
     wagon: WagonModel
@@ -156,6 +156,7 @@ class Vehicle(Block):
     ride: Ride
     locked: Flags
     airborne: Flags
+    turning: Vector
     account: _Account
     scratch: Scratch
     rail_work: RailWork
@@ -218,6 +219,7 @@ def new_vehicle(
         ride=Ride.blank(3),
         locked=np.zeros(wagon.wheels, dtype=np.bool_),
         airborne=np.zeros(wagon.wheels, dtype=np.bool_),
+        turning=np.ones(wagon.wheels),
         account=_account(wagon.wheels),
         scratch=_scratch(wagon),
         rail_work=rail_work(rail),

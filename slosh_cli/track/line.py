@@ -17,12 +17,16 @@ class Line(Block):
     """The running resistance `a + b V + c V^2` of a half vehicle: `resistance` (3,) in N, N s/m and N s^2/m^2; and the
     `pull` (m/s^2) of gravity along the track, forward, on every mass. Where the gradient changes, `pulls` (n,) are
     those at the `places` (n,) m of the vehicle, linear between them (theory section 14).
+
+    A vehicle that may be pushed back opposes that too; below the speed `standing` (m/s) its constant resistance fades.
+    It is zero for one that only runs forward.
     """
 
     resistance: Vector
     pull: float
     places: Vector
     pulls: Vector
+    standing: float
 
     @inner_kernel
     def pull_at(self, place):
@@ -47,4 +51,9 @@ class Line(Block):
     def resisting_force(self, speed):
         """Running resistance (N) at `speed` (m/s) and its derivative (N s/m); theory section 8."""
         constant, linear, quadratic = self.resistance[0], self.resistance[1], self.resistance[2]
+        if speed < self.standing > 0.0:
+            fading = abs(speed) < self.standing
+            part = speed / self.standing if fading else -1.0
+            slope = linear + 2.0 * abs(speed) * quadratic + (constant / self.standing if fading else 0.0)
+            return part * constant + speed * (linear + abs(speed) * quadratic), slope
         return constant + speed * (linear + speed * quadratic), linear + 2.0 * speed * quadratic

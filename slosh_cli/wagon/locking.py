@@ -36,7 +36,9 @@ def wheel_forces(vehicle, point, time):
         creep[i] = force
         torque[i], scratch.torque_slope[i] = force * radius, 0.0
         if not locked[i]:
-            torque[i], scratch.torque_slope[i] = brake.torque(i, time, spin)
+            way = vehicle.turning[i]
+            held, scratch.torque_slope[i] = brake.torque(i, time, way * spin)
+            torque[i] = way * held
         scratch.creep_by_normal[i] = by_normal
         scratch.creep_by_slip[i] = by_slip
         scratch.creep_by_speed[i] = by_speed
@@ -49,12 +51,13 @@ def wheel_values(vehicle, point, time, values):
     radius, first = wagon.wheel_radius, wagon.first_spin
     for i in range(wagon.wheels):
         spin = spins[first + i]
-        torque, _ = vehicle.brake.torque(i, time, 0.0 if locked[i] else spin)
+        rolling = vehicle.turning[i] * spin
+        torque, _ = vehicle.brake.torque(i, time, 0.0 if locked[i] else rolling)
         values[i] = 1.0
         if locked[i]:
-            values[i] = 1.0 - point.creep[i] * radius / torque if torque > 0.0 else -1.0
+            values[i] = 1.0 - abs(point.creep[i]) * radius / torque if torque > 0.0 else -1.0
         elif torque > 0.0:
-            values[i] = radius * spin
+            values[i] = radius * rolling
 
 
 @inner_kernel
@@ -75,12 +78,13 @@ def wheel_holds(vehicle, wheel, time):
     approach = contact.approach(wheel, point.rail[under], q[heave], q[0], q[wagon.first_spin + wheel])
     normal, slope = contact.normal_force(approach)
     force, by_normal, by_slip, by_speed = contact.creep_force(normal, speed, speed)
-    over = force * wagon.wheel_radius - torque
+    way = 1.0 if force >= 0.0 else -1.0
+    over = way * force * wagon.wheel_radius - torque
     if abs(over) > SWITCH_TOLERANCE * torque:
         return over < 0.0
     rising = contact.rising(wheel, q[0], speed, q[wagon.first_spin + wheel], 0.0)
     rate = by_normal * slope * (point.rail_rate[under] + rising - point.v[heave]) + (by_slip + by_speed) * point.a[0]
-    return rate * wagon.wheel_radius <= (later - torque) / _RATE_OVER
+    return way * rate * wagon.wheel_radius <= (later - torque) / _RATE_OVER
 
 
 @inner_kernel
@@ -97,7 +101,7 @@ def switch_reached(vehicle, time, before, after):
         if armed or after[i] < -SWITCH_TOLERANCE:
             switched = True
             spins[wagon.first_spin + i] = 0.0
-            vehicle.locked[i] = wheel_holds(vehicle, i, time)
+            _hold_or_turn(vehicle, i, time)
     return switched
 
 
@@ -111,14 +115,25 @@ def switch_at_start(vehicle, time, before, after, step, shortest):
             holds = wheel_holds(vehicle, i, time)
             if holds != locked[i]:
                 switched = True
-                locked[i] = holds
+                _hold_or_turn(vehicle, i, time)
                 spins[wagon.first_spin + i] = 0.0
     return switched
 
 
 @inner_kernel
 def let_go(vehicle, time):
-    """Release the locked wheels that the brake holds no longer after a break of its torque at `time` (s)."""
-    locked = vehicle.locked
-    for i in range(vehicle.wagon.wheels):
-        locked[i] = locked[i] and wheel_holds(vehicle, i, time)
+    """Release the locked wheels that the brake holds no longer after a break of its torque at `time` (s); the others
+    are braked against the way that they turn."""
+    wagon, spins = vehicle.wagon, vehicle.points[0].v
+    for i in range(wagon.wheels):
+        if vehicle.locked[i]:
+            _hold_or_turn(vehicle, i, time)
+        else:
+            vehicle.turning[i] = -1.0 if spins[wagon.first_spin + i] < 0.0 else 1.0
+
+
+@inner_kernel
+def _hold_or_turn(vehicle, wheel, time):
+    """Lock a wheel that is at rest at `time` (s) where the brake holds it; else the rail turns it its way."""
+    vehicle.locked[wheel] = wheel_holds(vehicle, wheel, time)
+    vehicle.turning[wheel] = -1.0 if vehicle.points[0].creep[wheel] < 0.0 else 1.0

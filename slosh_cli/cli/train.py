@@ -1,0 +1,148 @@
+"""What `slosh run`, `slosh check` and `slosh plot` do with a train."""
+
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.output import complain, note, say, say_json, show, warn
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from slosh_cli.results.train_result import TrainResult
+    from slosh_cli.scenario.train_file import TrainScenario
+
+
+def run_train(
+    file: Path, output: Path | None, overrides: Sequence[str] | None, *, as_json: bool, figures: bool
+) -> ExitCode:
+    """Simulate the stop of a train, tell of it, keep its files."""
+    from slosh_cli.application.keeping import Keeping, folder_of_run
+    from slosh_cli.application.train import TRAIN_FILES, keep_train
+    from slosh_cli.cli.keeping import told
+    from slosh_cli.cli.summary import show_files
+    from slosh_cli.results.result import Status
+    from slosh_cli.scenario.train_file import load_train
+
+    train = load_train(file, overrides or ())
+    folder = folder_of_run(train, output, overrides, TRAIN_FILES, note)
+    result, keeping = _simulate(train), Keeping()
+    stopped = result.status is Status.STOPPED
+    if not as_json:
+        _show(result)
+    files = keep_train(result, folder, keeping, figures=figures)
+    if as_json:
+        answer = result.summary()
+        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
+        for warning in result.warnings:
+            warn(warning)
+        if not stopped:
+            complain(f"{result.status}: {result.reason} {result.status.remedy}")
+    else:
+        show_files(files)
+    return told(keeping, ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
+
+
+def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -> ExitCode:
+    """Say that a train is sound, and what of."""
+    from slosh_cli.scenario.train_file import load_train
+
+    train = load_train(file, overrides or ())
+    vehicles, last = train.vehicles, train.vehicles[-1]
+    length = sum(one.wagon.length_in_train for one in vehicles)
+    if as_json:
+        found = {"name": train.name, "valid": True, "describes": "a train", "file": str(file), "length_m": length}
+        each = [{"name": one.name, "onset_s": one.braking.onset} for one in vehicles]
+        say_json(found | {"vehicles": each, "warnings": []})
+        return ExitCode.DONE
+    say(f"{file}: {train.name} is a sound train of {len(vehicles)} vehicles, {length:.1f} m long")
+    kinds = dict.fromkeys(one.name for one in vehicles)
+    say("Vehicles: " + ", ".join(f"{sum(one.name == kind for one in vehicles)} x {kind}" for kind in kinds))
+    onsets = f"{vehicles[0].braking.onset:.2f} s at the front and {last.braking.onset:.2f} s at the end"
+    say(f"The brakes set in after {onsets}")
+    return ExitCode.DONE
+
+
+def plot_train(history_file: Path, folder: Path) -> ExitCode:
+    """Draw the figures of a train from its history file."""
+    from slosh_cli.application.keeping import Keeping
+    from slosh_cli.application.train import TRAIN_FILES
+    from slosh_cli.cli.keeping import told
+    from slosh_cli.report import TRAIN_FIGURES
+    from slosh_cli.report.train_figures import draw_train
+    from slosh_cli.results.files import try_targets
+    from slosh_cli.results.hdf5 import read_train
+
+    history, keeping = read_train(history_file), Keeping()
+    try_targets(folder, TRAIN_FILES)
+    for name in TRAIN_FIGURES:
+        with keeping.part(f"the figure {folder / name}"):
+            for drawn in draw_train(history, folder, names=(name,)):
+                say(str(drawn))
+    return told(keeping)
+
+
+def _simulate(train: "TrainScenario") -> "TrainResult":
+    """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
+    from slosh_cli.application.train import simulate_train
+    from slosh_cli.cli.progress import RunProgress, announce_solver
+
+    models = {one.tank.liquid.model for one in train.vehicles}
+    announce_solver(models if len(models) == 1 else models - {"rigid"})
+    cancel = threading.Event()
+    with RunProgress(train.name) as progress:
+        try:
+            return simulate_train(train, progress=progress, cancel=cancel)
+        except KeyboardInterrupt:
+            cancel.set()
+            raise
+
+
+def _show(result: "TrainResult") -> None:
+    """Print what a train's run found and what it warns of, to stdout."""
+    from rich.text import Text
+
+    stopped = result.braking_distance_m is not None
+    lines = [] if stopped else [f"No braking distance: {result.status}. {result.reason}".rstrip(), result.status.remedy]
+    alarms = [Text(line, style="bold red") for line in lines]
+    alarms += [Text(f"warning: {warning}", style="bold yellow") for warning in result.warnings]
+    show(_facts(result), "", _rows(result), *([""] if alarms else []), *alarms)
+
+
+def _facts(result: "TrainResult") -> "Table":
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    speed = result.initial_speed_m_s * 3.6
+    table.title, table.title_justify, table.title_style = (
+        f"{result.name}: {len(result.vehicles)} vehicles, {speed:.4g} km/h",
+        "left",
+        "bold",
+    )
+    lines = sorted(((one.line, getattr(result, one.name)) for one in result.table() if one.line), key=lambda x: x[0].at)
+    for line, value in lines:
+        told = "-" if value is None else f"{value / line.per:{line.form}}" if line.form else str(value)
+        table.add_row(line.label, f"{told} {line.unit}".rstrip())
+    return table
+
+
+def _rows(result: "TrainResult") -> "Table":
+    """One row per vehicle, with the coupling behind it."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    heads = ("vehicle", "scenario", "onset / s", "way / m", "rise / m", "unloading / %", "locked / s")
+    for column in (*heads, "compression / kN", "tension / kN"):
+        table.add_column(column, justify="left" if column == "scenario" else "right")
+    behind: list[Any] = [*result.couplings, None]
+    for number, (one, coupling) in enumerate(zip(result.vehicles, behind, strict=True), 1):
+        forces = ["", ""]
+        if coupling is not None:
+            forces = [f"{coupling.max_compression_N / 1e3:.1f}", f"{coupling.max_tension_N / 1e3:.1f}"]
+        numbers = (f"{one.onset_s:.2f}", f"{one.distance_m:.2f}", f"{one.max_surface_m:.2f}")
+        wheels = (f"{100 * one.max_wheel_unloading:.1f}", f"{max(one.locked_time_s):.2f}")
+        table.add_row(str(number), one.name, *numbers, *wheels, *forces)
+    return table

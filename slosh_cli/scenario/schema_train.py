@@ -1,0 +1,139 @@
+"""The couplings between the vehicles of a train."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Annotated, ClassVar, Final
+
+from pydantic import Field
+
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.leaves import Quantity, Range
+from slosh_cli.scenario.points import Points
+from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.units import at_least, shown
+
+_BRANCH: Final = Points(
+    Quantity("length", Range(0.0, 10.0), "105 mm"),
+    Quantity("force", Range(0.0, 1e9), "590 kN"),
+    "[[0 mm, 0 kN], [10 mm, 30 kN], [210 mm, 1180 kN]]",
+    least=2,
+    first=0.0,
+)
+Branch = tuple[tuple[float, float], ...]
+"""Travel (m) and force (N) of the corners of a coupling's branch, the first one at (0, 0)."""
+
+
+def force_at(points: Branch, travel: float) -> float:
+    """Force (N) of a branch at a `travel` (m) of zero or more; its last line goes on."""
+    (x, y), (x_after, y_after) = next((pair for pair in pairwise(points) if travel < pair[1][0]), points[-2:])
+    return y + (y_after - y) / (x_after - x) * (travel - x)
+
+
+def _never_falls(v: Values) -> Iterator[Finding]:
+    for key in ("loading", "unloading"):
+        points = v.get(key, ((0.0, 0.0),))
+        if points[0][1] != 0.0:
+            given = f"`{shown(points[0][1])} N` without travel"
+            yield Finding((key,), "must begin without force", given, "write `[0 mm, 0 kN]` as the first point")
+        for number, (before, after) in enumerate(pairwise(points), 2):
+            if after[1] < before[1]:
+                rule, given = f"must never fall, but point {number} does", f"`{shown(after[1])} N`"
+                yield Finding((key,), rule, given, f"write `{at_least(before[1])} N` or more there")
+
+
+def _unloading_below(v: Values) -> Iterator[Finding]:
+    if not v.has("loading", "unloading"):
+        return
+    loading, unloading = v["loading"], v["unloading"]
+    end = 2.0 * max(loading[-1][0], unloading[-1][0])
+    for travel in sorted({x for x, _ in (*loading, *unloading)} | {end}):
+        most, found = force_at(loading, travel), force_at(unloading, travel)
+        if found > most * (1.0 + 1e-9):
+            given = f"`{shown(found)} N` at {shown(travel)} m, above `{shown(most)} N`"
+            fix = f"write `{shown(most)} N` or less there, or exchange the branches"
+            yield Finding(("unloading",), "must nowhere be above loading", given, fix)
+            return
+
+
+class Spring(Part):
+    """One direction of a coupling: a spring with friction."""
+
+    rules = (_never_falls, _unloading_below)
+
+    loading: Annotated[Branch, _BRANCH] = Field(description="Travel and force as the force grows, m and N.")
+    unloading: Annotated[Branch, _BRANCH] = Field(
+        description="Travel and force as the force goes, m and N; nowhere above loading."
+    )
+
+
+class LinearCoupling(Part):
+    """A coupling without friction or slack, for checks."""
+
+    stiffness: Annotated[float, Quantity("stiffness", Range(0.0, 1e12), "1.0e7 N/m")] = Field(
+        description="Stiffness of the whole coupling, N/m."
+    )
+    damping: Annotated[float, Quantity("damping", Range(0.0, 1e9), "5.0e4 N s/m")] = Field(
+        default=0.0, description="Damping of the whole coupling, N s/m."
+    )
+
+
+def _linear_alone(v: Values) -> Iterator[Finding]:
+    if v.get("linear.stiffness") is None:
+        for key, other in (("compression", "tension"), ("tension", "compression")):
+            if not v.wrote(key) and v.wrote(other):
+                yield Finding((key,), "is required", "nothing", f"write `{key}:` with loading and unloading under it")
+        return
+    for key in ("tension", "transition_stiffness", "damping"):
+        if v.wrote(key):
+            yield Finding((key,), "must not be given beside `linear`", "both", "keep one of them")
+
+
+def _transition_steepest(v: Values) -> Iterator[Finding]:
+    """A branch steeper than the way across would be followed up on the lower and down on the upper one."""
+    tables = ("compression.loading", "compression.unloading", "tension.loading", "tension.unloading")
+    for key in tables:
+        for (x, y), (x_after, y_after) in pairwise(v.get(key, ())):
+            slope, transition = (y_after - y) / (x_after - x), v.get("transition_stiffness")
+            if transition is not None and slope > transition * (1.0 + 1e-9):
+                rule = f"must be at least that of {key} at its steepest, {shown(slope)} N/m, or friction gives energy"
+                fix = f"write `transition_stiffness: {at_least(slope)} N/m`, or a gentler branch"
+                yield Finding(("transition_stiffness",), rule, f"`{shown(transition)} N/m`", fix)
+                return
+
+
+class Coupling(Part):
+    """What holds two neighbours together: springs with friction for compression and tension, or one that is linear."""
+
+    exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = (("compression", "linear"),)
+    rules = (_linear_alone, _transition_steepest)
+
+    compression: Spring | None = Field(default=None, description="The coupling as its neighbours run up.")
+    tension: Spring | None = Field(default=None, description="The coupling as its neighbours part.")
+    transition_stiffness: Annotated[float, Quantity("stiffness", Range(1e5, 1e12), "1.0e8 N/m")] = Field(
+        default=1.0e8, description="Stiffness with which the force goes from one branch to the other, N/m."
+    )
+    damping: Annotated[float, Quantity("damping", Range(0.0, 1e9), "0 N s/m")] = Field(
+        default=0.0, description="Damping beside the springs, N s/m."
+    )
+    linear: LinearCoupling | None = Field(default=None, description="A linear coupling instead, for checks.")
+
+
+def _ring_springs(travel: float, force: float, last: float, most: float) -> Spring:
+    loading = ((0.0, 0.0), (travel, force), (last, most))
+    return Spring.model_construct(loading=loading, unloading=tuple((x, y / 3.0) for x, y in loading))
+
+
+_GEAR = Spring.model_construct(
+    loading=((0.0, 0.0), (0.025, 0.0), (0.027, 240e3), (0.115, 2501.6e3), (0.125, 5001.6e3)),
+    unloading=((0.0, 0.0), (0.025, 0.0), (0.027, 50e3), (0.115, 300.8e3), (0.125, 2800.8e3)),
+)
+COUPLINGS: Final[dict[str, Coupling]] = {
+    "screw": Coupling.model_construct(
+        compression=_ring_springs(0.010, 30e3, 0.210, 1180e3), tension=_ring_springs(0.005, 30e3, 0.110, 1000e3)
+    ),
+    "automatic": Coupling.model_construct(compression=_GEAR, tension=_GEAR, transition_stiffness=2.5e8),
+}
+"""Side buffers and draw gear after EN 15551, both ends of a coupling in series; an automatic coupler with a slack of
+25 mm either way, whose gear of 90 mm then meets its stop."""

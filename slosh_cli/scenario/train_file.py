@@ -1,0 +1,255 @@
+"""Trains kept in a file: vehicles from the front, each the wagon, tank and brake of a scenario, and what they share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Final, NamedTuple
+
+from pydantic import Field
+
+from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
+from slosh_cli.scenario.base import Part
+from slosh_cli.scenario.document import Document
+from slosh_cli.scenario.leaves import Count, Judge, Quantity, Range
+from slosh_cli.scenario.loader import Root, load_document, read, scenario_to_yaml
+from slosh_cli.scenario.packaged import find_packaged
+from slosh_cli.scenario.rules import Finding
+from slosh_cli.scenario.schema import Scenario, load_scenario
+from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
+from slosh_cli.scenario.schema_train import COUPLINGS, Coupling
+from slosh_cli.scenario.short import Short
+from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.words import Text
+
+_MOST: Final = 1000
+_EVERY: Final = "all"
+_SHARED: Final = ("track", "contact", "solver", "output")
+"""Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
+
+
+@dataclass(frozen=True)
+class _Settings(Judge):
+    def parse(self, value: object) -> Any:
+        if isinstance(value, dict):
+            return value
+        raise ValueRefused("must be a mapping of key paths to values", plain(value), "write `set: {tank.fill: 0.9}`")
+
+
+class TrainEntry(Part):
+    """A vehicle of a train, or several alike."""
+
+    scenario: Annotated[str, Text(longest=500)] = Field(
+        description="Path of the scenario from this file, or the name of a packaged one."
+    )
+    count: Annotated[int, Count(1, _MOST)] = Field(default=1, description="How many of them.")
+    set: Annotated[dict[str, Any], _Settings()] = Field(
+        default={}, description="Keys of the scenario with values of their own."
+    )
+
+
+class BrakePipe(Part):
+    """The pipe along the train that tells the brakes to set in."""
+
+    speed: Annotated[float, Quantity("speed", Range(1.0, 1e5), "280 m/s")] = Field(
+        default=280.0, description="Speed of the brake wave from the front, m/s."
+    )
+
+
+class TrainBraking(Part):
+    """The stop of a train; torque, blocks and application come with each vehicle."""
+
+    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
+        description="Speed at the start of the run, m/s."
+    )
+    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
+        description="When the driver brakes, after the start of the run, s."
+    )
+    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
+        default=0.02, description="The run ends when the mean speed of all vehicles falls to this, m/s."
+    )
+
+
+class TrainFile(Root):
+    """What the file of a train says."""
+
+    noun: ClassVar[str] = "train"
+
+    vehicles: tuple[TrainEntry, ...] = Field(min_length=1, description="The vehicles from the front.")
+    coupling: Annotated[Coupling, Short(COUPLINGS)] = Field(
+        default=COUPLINGS["screw"],
+        description="The coupling of any two neighbours: `screw`, `automatic`, or its springs in a mapping.",
+    )
+    brake_pipe: BrakePipe = Field(default=BrakePipe.model_construct(), description="The pipe along the train.")
+    braking: TrainBraking = Field(description="The stop of the train.")
+    track: Track | None = Field(default=None, description="The track under one rail. Default: the first vehicle's.")
+    contact: Contact | None = Field(default=None, description="Wheel and rail. Default: the first vehicle's.")
+    solver: Solver | None = Field(default=None, description="Accuracy, patience. Default: the first vehicle's.")
+    output: Output | None = Field(default=None, description="What is written. Default: the first vehicle's.")
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the train says for all its vehicles, by key path."""
+        braking = {f"braking.{key}": getattr(self.braking, key) for key in ("initial_speed", "stop_speed", "onset")}
+        return braking | {key: getattr(self, key) for key in _SHARED if getattr(self, key) is not None}
+
+
+@dataclass(frozen=True)
+class TrainScenario:
+    """A train as it is simulated: `vehicles` from the front, each with the onset at which the brake wave reaches it,
+    and all with the train's track, contact, solver and output."""
+
+    file: TrainFile
+    vehicles: tuple[Scenario, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of the train."""
+        return self.file.name
+
+    @property
+    def text(self) -> str:
+        """The train resolved: its own file, and the scenario of every kind of vehicle, as YAML documents."""
+        kinds = {scenario_to_yaml(_at_onset(vehicle, 0.0)): None for vehicle in self.vehicles}
+        return "---\n".join([scenario_to_yaml(self.file), *kinds])
+
+
+class _Wish(
+    NamedTuple
+):  # an override of vehicles: the place from the front or None for all, key path, value, as written
+    place: int | None
+    key: str
+    value: str
+    written: str
+
+
+def is_train_file(path: Path) -> bool:
+    """Whether the file describes a train; False where it cannot be read at all."""
+    try:
+        data = load_document(path).data
+    except ScenarioError:
+        return False
+    return isinstance(data, dict) and "vehicles" in data
+
+
+def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario:
+    """Read a train and the scenarios of its vehicles.
+
+    `overrides` are texts ``all.KEY=VALUE`` for every vehicle, ``vehicles.N.KEY=VALUE`` for the N-th from the front, or
+    ``KEY=VALUE`` for a key of the train's file. Raises ScenarioError, which names the file that is wrong.
+    """
+    path = Path(path)
+    own, wishes = _sorted(overrides)
+    document = read(path, own, lambda _: TrainFile)
+    file = TrainFile.of(document, str(path))
+    total = sum(entry.count for entry in file.vehicles)
+    _check_places(document, wishes, total)
+    if total > _MOST:
+        document.add(Finding(("vehicles",), f"must be at most {_MOST} in all", f"{total}", "leave some out"))
+    found: list[Scenario] = []
+    load = lru_cache(maxsize=None)(load_scenario)
+    for number, entry in enumerate(file.vehicles):
+        source = _source(document, path, number, entry)
+        for place in range(len(found) + 1, len(found) + 1 + entry.count) if source else ():
+            mine = [wish for wish in wishes if wish.place in (None, place)]
+            settings = tuple(f"{key}={json.dumps(value)}" for key, value in entry.set.items())
+            try:
+                found.append(load(source, (*settings, *(f"{wish.key}={wish.value}" for wish in mine))))
+            except ScenarioError as error:
+                raise _at_its_place(error, document, path, number, mine) from None
+        if document.problems:
+            raise ScenarioError(str(path), document.sorted_problems())
+    return TrainScenario(file, tuple(_along_the_pipe(file, _with_shared(file, document, path, found))))
+
+
+def _sorted(overrides: Iterable[str]) -> tuple[list[str], list[_Wish]]:
+    """Overrides of the train's file, and those of its vehicles."""
+    own, wishes = [], []
+    for text in overrides:
+        key, equals, value = text.partition("=")
+        first, _, rest = key.strip().partition(".")
+        place, _, inner = rest.partition(".")
+        if first == _EVERY and rest and equals:
+            wishes.append(_Wish(None, rest, value, f"--set {key.strip()}"))
+        elif first == "vehicles" and place.isdecimal() and inner and equals:
+            wishes.append(_Wish(int(place), inner, value, f"--set {key.strip()}"))
+        else:
+            own.append(text)
+    return own, wishes
+
+
+def _check_places(document: Document, wishes: Sequence[_Wish], total: int) -> None:
+    for wish in wishes:
+        document.overrides.append(wish.written)
+        if wish.place is not None and not 1 <= wish.place <= total:
+            rule = f"must name a vehicle from the front, 1 to {total}"
+            fix = f"write `vehicles.1.{wish.key}`, or `all.{wish.key}` for every vehicle"
+            document.problems.append(Problem(None, "", rule, f"`{wish.place}`", fix, wish.written))
+    if any(problem.override for problem in document.problems):
+        raise ScenarioError("", document.sorted_problems())
+
+
+def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:
+    """The file of a vehicle's scenario; None, with a problem, where there is none or it describes a train."""
+    where, beside = ("vehicles", number, "scenario"), path.parent / entry.scenario
+    found = beside
+    if not beside.is_file():
+        try:
+            found = find_packaged(entry.scenario)
+        except UsageError as error:
+            rule = "must be the path of a scenario from this file, or the name of a packaged one"
+            fix = error.message.rpartition("; ")[2]
+            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {beside}", fix))
+            return None
+    if is_train_file(found):
+        rule, fix = "must be the scenario of one vehicle", "name a scenario, or write that train's vehicles here"
+        document.add(Finding(where, rule, f"`{entry.scenario}`, a train", fix))
+        return None
+    return found
+
+
+def _at_its_place(
+    error: ScenarioError, document: Document, path: Path, number: int, wishes: Sequence[_Wish]
+) -> ScenarioError:
+    """What is wrong with a vehicle's own values, at the lines of the train's file or the overrides that gave them; what
+    is wrong with its scenario as it is stays as it is."""
+    written = {f"--set {wish.key}": wish.written for wish in wishes}
+
+    def moved(problem: Problem) -> Problem:
+        if problem.override in written:
+            return replace(problem, override=written[problem.override])
+        place = ("vehicles", number, "set", problem.override.removeprefix("--set "))
+        return replace(problem, line=document.origin(place).line, key=".".join(map(str, place)), override="")
+
+    own = [problem for problem in error.problems if not problem.override]
+    return error if own else ScenarioError(str(path), [moved(problem) for problem in error.problems])
+
+
+def _with_shared(file: TrainFile, document: Document, path: Path, found: Sequence[Scenario]) -> Iterator[Scenario]:
+    """The vehicles with what the train says for all of them, or else the first one; each kind is checked once."""
+    settings = {key: getattr(found[0], key) for key in _SHARED} | file.settings
+    kinds: dict[int, Scenario] = {}
+    for number, scenario in enumerate(found, 1):
+        if id(scenario) not in kinds:
+            try:
+                kinds[id(scenario)] = scenario.with_(settings)
+            except ScenarioError as error:
+                told = [replace(problem, line=document.origin(("braking",)).line) for problem in error.problems]
+                raise ScenarioError(f"{path}, vehicle {number} ({scenario.name})", told) from None
+        yield kinds[id(scenario)]
+
+
+def _along_the_pipe(file: TrainFile, vehicles: Iterable[Scenario]) -> Iterator[Scenario]:
+    """The vehicles with their onsets: the wave comes to the middle of each from the front of the train."""
+    front = 0.0
+    for scenario in vehicles:
+        length = scenario.wagon.length_in_train
+        yield _at_onset(scenario, file.braking.onset + (front + 0.5 * length) / file.brake_pipe.speed)
+        front += length
+
+
+def _at_onset(scenario: Scenario, onset: float) -> Scenario:
+    return scenario.model_copy(update={"braking": scenario.braking.model_copy(update={"onset": onset})})

@@ -1,0 +1,1 @@
+"""What makes a train of vehicles: the couplings between them."""
