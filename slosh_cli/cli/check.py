@@ -30,6 +30,7 @@ _SHEET: Final = {
     },
     "Periods": {
         "slosh_period_s": ("first slosh period", ".2f", "s"),
+        "slosh_after_build_up": ("slosh after build-up over a step's", ".2f", ""),
         "bounce_frequency_Hz": ("bounce of the wagon", ".2f", "Hz"),
         "pitch_frequency_Hz": ("pitch of the wagon", ".2f", "Hz"),
     },

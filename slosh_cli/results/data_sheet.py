@@ -37,7 +37,8 @@ def data_sheet(scenario: Scenario | TankScenario) -> Sheet:
     tank_sheet = _tank_sheet(scenario.tank)
     if not isinstance(scenario, Scenario):
         return tank_sheet | {"slosh_period_s": _slosh_period(scenario.tank)}
-    period = {"slosh_period_s": _slosh_period(scenario.tank)}
+    found = _slosh_period(scenario.tank)
+    period = {"slosh_period_s": found, "slosh_after_build_up": _slosh_left(scenario, found) if found else None}
     return tank_sheet | _mass_sheet(scenario) | _brake_sheet(scenario) | period | _wagon_frequencies(scenario)
 
 
@@ -99,6 +100,22 @@ def _slosh_period(tank: Tank) -> float | None:
         return None
 
 
+def _slosh_left(scenario: Scenario, period: float) -> float:
+    """Amplitude of an undamped slosh of a `period` (s) once the brake has built up, over that of a brake at once.
+
+    That is the size of the Fourier transform of the application's rate: 1 for a step, 0 for a ramp over whole periods.
+    """
+    turn, total, before = 2.0j * math.pi / period, 0.0j, 0.0
+    stretches = scenario.braking.application.stretches
+    for (start, base, slope, amplitude, rate), after in zip(stretches, (*stretches[1:], None), strict=True):
+        length = after[0] - start if after else math.inf
+        rest, fade = (0.0, 0.0) if after is None else (np.exp(-turn * length), math.exp(-rate * length))
+        ramp = slope * (1.0 - rest) / turn - amplitude * rate * (1.0 - rest * fade) / (rate + turn)
+        total += np.exp(-turn * start) * (base + amplitude - before + ramp)
+        before = base + slope * length + amplitude * fade if after else before
+    return float(abs(total))
+
+
 def _half_wagon(scenario: Scenario) -> WagonModel:
     tank = scenario.tank
     return wagon_model(scenario.wagon, tank.bottom_height, frozen_load(tank))
@@ -147,8 +164,9 @@ def _resonances(sheet: Mapping[str, float | None]) -> Iterator[str]:
     if filling and turns and abs(filling / period - turns) < _NEAR:
         times = "the" if turns == 1 else f"{turns} times the"
         yield (
-            f"The brake fills in {filling:.1f} s, near {times} slosh period of {period:.1f} s: a build-up over a whole "
-            "multiple of the period acts as an input shaper and leaves little slosh."
+            f"The brake fills in {filling:.1f} s, near {times} slosh period of {period:.1f} s: a straight build-up "
+            "over a whole multiple of the period is an input shaper and leaves no slosh of the first mode; this one "
+            f"leaves {sheet['slosh_after_build_up']:.0%} of what a step leaves."
         )
     for name in ("bounce", "pitch"):
         frequency = sheet.get(f"{name}_frequency_Hz")

@@ -1,13 +1,15 @@
 """The data sheet of a wagon against figures by hand."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.linalg import eigh
 
 from slosh_cli.results.data_sheet import data_sheet, resonances
+from slosh_cli.results.point_stop import _applied
 from slosh_cli.wagon.torque import moved_mass, total_mass
 
 
@@ -109,6 +111,37 @@ def test_bounce_and_pitch_of_bodies_on_springs(shipped):
     assert sheet["pitch_frequency_Hz"] == pytest.approx(pitch, rel=1e-3)
 
 
+APPLICATIONS = {
+    "step": ("step", 1.0),
+    "P": ("P", None),
+    "G": ("G", None),
+    "late": ("{form: filling, time_95: 5 s, delay: 1 s, jump: 0.3}", None),
+    "ramp over a period": (f"{{form: linear, time: {2 * math.pi / 0.69!r} s}}", 0.0),
+    "ramp over half a period": (f"{{form: linear, time: {math.pi / 0.69!r} s}}", 2 / math.pi),
+    "table": ("{form: table, points: [[0 s, 0.2], [1 s, 0.3], [3 s, 0.3], [3.5 s, 1], [8 s, 0.4]]}", None),
+}
+
+
+@pytest.mark.parametrize("case", APPLICATIONS)
+def test_the_slosh_that_a_build_up_leaves(shipped, case):
+    """An undamped oscillator pushed by the application, integrated in time, swings so much about its new rest."""
+    written, exact = APPLICATIONS[case]
+    scenario = shipped("paper_80", f"braking.application={written}")
+    found, omega = data_sheet(scenario)["slosh_after_build_up"], 0.69
+    if exact is not None:
+        assert found == pytest.approx(exact, abs=1e-9)
+    onset, end = scenario.braking.onset, 200.0
+
+    def rates(time, state):
+        return [state[1], omega**2 * (_applied(scenario, onset + time) - state[0])]
+
+    kinks = (0.0, 1.0, 3.0, 3.5, 8.0, math.pi / 0.69, 2 * math.pi / 0.69, end)
+    state = np.zeros(2)
+    for start, stop in pairwise(sorted(kinks)):
+        state = solve_ivp(rates, (start, stop - 1e-12), state, rtol=1e-10, atol=1e-12, max_step=0.5).y[:, -1]
+    assert math.hypot(state[0] - _applied(scenario, onset + end), state[1] / omega) == pytest.approx(found, abs=1e-6)
+
+
 def test_the_slosh_period_is_that_of_the_modes_in_use(shipped):
     assert data_sheet(shipped("paper_80"))["slosh_period_s"] == pytest.approx(2 * math.pi / 0.69)
     computed = data_sheet(shipped("paper_80_solid"))["slosh_period_s"]
@@ -120,7 +153,7 @@ def test_the_slosh_period_is_that_of_the_modes_in_use(shipped):
 @pytest.mark.parametrize(
     ("known", "said"),
     [
-        ({"filling_time_s": 4.1}, "near the slosh period of 4.0 s: a build-up over a whole multiple"),
+        ({"filling_time_s": 4.1}, "near the slosh period of 4.0 s: a straight build-up over a whole multiple"),
         ({"filling_time_s": 24.3}, "near 6 times the slosh period"),
         ({"filling_time_s": 6.0}, ""),
         ({"filling_time_s": 0.0}, ""),
@@ -129,6 +162,6 @@ def test_the_slosh_period_is_that_of_the_modes_in_use(shipped):
     ],
 )
 def test_a_build_up_or_a_frequency_near_the_slosh_period_is_told(known, said):
-    told = resonances({"slosh_period_s": 4.0, **known})
+    told = resonances({"slosh_period_s": 4.0, "slosh_after_build_up": 0.5, **known})
     assert (said in told[0]) if said else not told
     assert resonances({"slosh_period_s": None, **known}) == []
