@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterator
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Final
 
 from pydantic import Field
 
@@ -13,6 +13,9 @@ from slosh_cli.scenario.units import at_most, shown
 
 _Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
 _Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
+
+_COUPLING_HEIGHT: Final = 1.06
+"""m."""
 
 
 class CarBody(Part):
@@ -132,7 +135,21 @@ class Wagon(Part):
     )
     running_resistance: RunningResistance = Field(description="Running resistance of the whole wagon.")
     wheel_flats: tuple[WheelFlat, ...] = Field(default=(), description="Flats on wheels, one per wheel at most.")
+    length_over_buffers: Annotated[float | None, Quantity("length", Range(3.0, 100.0), "17 m")] = Field(
+        default=None,
+        description="Length that the wagon takes in a train, m; a wagon alone does not use it. "
+        "Default: the pivot spacing and 5 m.",
+    )
+    coupling_height: Annotated[float, Quantity("length", Range(0.2, 4.0), "1.06 m")] = Field(
+        default=_COUPLING_HEIGHT, description="Height of the couplings above the rail head, m; matters in a train."
+    )
+
+    @property
+    def length_in_train(self) -> float:
+        """Length over buffers, m."""
+        return self.pivot_spacing + 5.0 if self.length_over_buffers is None else self.length_over_buffers
 
     def unwritten(self, *, as_text: bool) -> Collection[str]:  # noqa: ARG002 - the same for both
-        """Flats of round wheels."""
-        return () if self.wheel_flats else ("wheel_flats",)
+        """Flats of round wheels, the usual height of couplings."""
+        usual = {"wheel_flats": (), "coupling_height": _COUPLING_HEIGHT}
+        return [name for name, value in usual.items() if getattr(self, name) == value]

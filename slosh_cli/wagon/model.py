@@ -147,10 +147,6 @@ def _weight(wagon: Wagon, load: FrozenLoad) -> Vector:
     return -0.5 * STANDARD_GRAVITY * masses
 
 
-COUPLING_HEIGHT = 1.06
-"""Height (m) of the coupling points above the rail head."""
-
-
 def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, carried: bool = True) -> WagonModel:
     """Assemble the half wagon; `load` is the whole tank's, `tank_bottom_height` (m) above the rail head.
 
@@ -175,7 +171,7 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
         weight=_weight(wagon, load),
         tank_row=tank_row,
         car_row=_car_at_height(wagon, wagon.car_body.centre_height),
-        coupling_row=_car_at_height(wagon, COUPLING_HEIGHT),
+        coupling_row=_car_at_height(wagon, wagon.coupling_height),
         tank_push=np.asarray(np.linalg.solve(mass, tank_row), dtype=np.float64),
         tank_turn=np.asarray(np.linalg.solve(mass, _unit(CAR_PITCH)), dtype=np.float64),
         gravity_stiffness=gravity_stiffness,
