@@ -29,7 +29,9 @@ _SHEET: Final = {
         "stopping_distance_m": ("distance from the onset, point mass", ".1f", "m"),
     },
     "Periods": {
-        "slosh_period_s": ("first slosh period", ".2f", "s"),
+        "slosh_period_s": ("first slosh period, tank held", ".2f", "s"),
+        "slosh_period_rolling_s": ("first slosh period, wagon rolling", ".2f", "s"),
+        "slosh_after_build_up": ("slosh after build-up over a step's", ".2f", ""),
         "bounce_frequency_Hz": ("bounce of the wagon", ".2f", "Hz"),
         "pitch_frequency_Hz": ("pitch of the wagon", ".2f", "Hz"),
     },

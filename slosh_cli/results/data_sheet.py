@@ -13,7 +13,7 @@ from slosh_cli.results.point_stop import mean_tau, point_stop, tau_at
 from slosh_cli.scenario import Scenario, Tank, TankScenario
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import liquid_depth, section_of
-from slosh_cli.tank.coefficients import given_modes
+from slosh_cli.tank.coefficients import SloshMode, given_modes
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
@@ -35,10 +35,10 @@ def data_sheet(scenario: Scenario | TankScenario) -> Sheet:
     and deceleration are those of the wagon as a rigid point mass without slip. A tank alone has no wagon's figures.
     """
     tank_sheet = _tank_sheet(scenario.tank)
+    slosh_sheet = _slosh_sheet(scenario)
     if not isinstance(scenario, Scenario):
-        return tank_sheet | {"slosh_period_s": _slosh_period(scenario.tank)}
-    period = {"slosh_period_s": _slosh_period(scenario.tank)}
-    return tank_sheet | _mass_sheet(scenario) | _brake_sheet(scenario) | period | _wagon_frequencies(scenario)
+        return tank_sheet | slosh_sheet
+    return tank_sheet | _mass_sheet(scenario) | _brake_sheet(scenario) | slosh_sheet | _wagon_frequencies(scenario)
 
 
 def _tank_sheet(tank: Tank) -> Sheet:
@@ -84,19 +84,56 @@ def _brake_sheet(scenario: Scenario) -> Sheet:
     }
 
 
-def _slosh_period(tank: Tank) -> float | None:
-    """Period (s) of the first slosh mode: a modal liquid's own, else by potential flow, as if a solid load could move.
+def _slosh_sheet(scenario: Scenario | TankScenario) -> Sheet:
+    """Periods of the first slosh mode: with the tank held, and in the wagon as a rigid mass that is free to roll.
 
-    None where the section has no finite-element mesh.
+    A brake gives the wagon a force; the wagon recoils under its liquid, which shortens the period (theory section 3).
+    None where closed bulkheads part the liquid, which then has several periods, or where no mode is known.
+    """
+    tank, first = scenario.tank, _first_mode(scenario.tank)
+    period = 2.0 * math.pi / first.frequency if first else None
+    if not isinstance(scenario, Scenario):
+        return {"slosh_period_s": period}
+    rolling, parted = None, tank.liquid.model != "modal" and longest_section(tank) < tank.length
+    if first and period and not parted and first.slosh_mass < moved_mass(scenario):
+        rolling = period * math.sqrt(1.0 - first.slosh_mass / moved_mass(scenario))
+    return {
+        "slosh_period_s": period,
+        "slosh_period_rolling_s": rolling,
+        "slosh_after_build_up": _slosh_left(scenario, rolling) if rolling else None,
+    }
+
+
+def _first_mode(tank: Tank) -> SloshMode | None:
+    """The first slosh mode: a modal liquid's own, else by potential flow, as if a solid load could move.
+
+    That of the longest part between closed bulkheads. None where the section has no finite-element mesh.
     """
     given = given_modes(tank) if tank.liquid.model == "modal" else ()
     if given:
-        return 2.0 * math.pi / min(mode.frequency for mode in given)
-    length = tank.length if tank.liquid.model == "modal" else longest_section(tank)
+        return min(given, key=lambda mode: mode.frequency)
+    length, density = tank.length if tank.liquid.model == "modal" else longest_section(tank), tank.liquid.density
     try:
-        return 2.0 * math.pi / longitudinal_modes(section_of(tank), liquid_depth(tank), length).modes[0].frequency
+        mode = longitudinal_modes(section_of(tank), liquid_depth(tank), length).modes[0]
     except TankError:
         return None
+    return SloshMode(mode.frequency, density * mode.lambda_1, density * mode.lambda_02, density * mode.mu)
+
+
+def _slosh_left(scenario: Scenario, period: float) -> float:
+    """Amplitude of an undamped slosh of a `period` (s) once the brake has built up, over that of a brake at once.
+
+    That is the size of the Fourier transform of the application's rate: 1 for a step, 0 for a ramp over whole periods.
+    """
+    turn, total, before = 2.0j * math.pi / period, 0.0j, 0.0
+    stretches = scenario.braking.application.stretches
+    for (start, base, slope, amplitude, rate), after in zip(stretches, (*stretches[1:], None), strict=True):
+        length = after[0] - start if after else math.inf
+        rest, fade = (0.0, 0.0) if after is None else (np.exp(-turn * length), math.exp(-rate * length))
+        ramp = slope * (1.0 - rest) / turn - amplitude * rate * (1.0 - rest * fade) / (rate + turn)
+        total += np.exp(-turn * start) * (base + amplitude - before + ramp)
+        before = base + slope * length + amplitude * fade if after else before
+    return float(abs(total))
 
 
 def _half_wagon(scenario: Scenario) -> WagonModel:
@@ -135,20 +172,25 @@ def _wagon_frequencies(scenario: Scenario) -> Sheet:
 
 
 def resonances(sheet: Mapping[str, float | None]) -> list[str]:
-    """Sentences where the brake's filling time or a frequency of the wagon is near the first slosh period."""
+    """Sentences where the brake's filling time or a frequency of the wagon is near the first slosh period.
+
+    That of the rolling wagon, for a brake does not hold the tank.
+    """
     return list(_resonances(sheet))
 
 
 def _resonances(sheet: Mapping[str, float | None]) -> Iterator[str]:
-    period, filling = sheet.get("slosh_period_s"), sheet.get("filling_time_s")
+    left, filling = sheet.get("slosh_after_build_up"), sheet.get("filling_time_s")
+    period = sheet.get("slosh_period_rolling_s") or sheet.get("slosh_period_s")
     if period is None:
         return
     turns = round((filling or 0.0) / period)
-    if filling and turns and abs(filling / period - turns) < _NEAR:
+    if filling and left is not None and turns and abs(filling / period - turns) < _NEAR:
         times = "the" if turns == 1 else f"{turns} times the"
         yield (
-            f"The brake fills in {filling:.1f} s, near {times} slosh period of {period:.1f} s: a build-up over a whole "
-            "multiple of the period acts as an input shaper and leaves little slosh."
+            f"The brake fills in {filling:.1f} s, near {times} slosh period of {period:.1f} s in the rolling wagon: a "
+            "straight build-up over a whole multiple of the period is an input shaper and leaves no slosh of the first "
+            f"mode; this one leaves {left:.0%} of what a step leaves."
         )
     for name in ("bounce", "pitch"):
         frequency = sheet.get(f"{name}_frequency_Hz")

@@ -133,14 +133,14 @@ class Record(Answers):
         "s", "how long a wheel was locked", Place.WHEELS, line=Told(5, "locked / s", ".2f"))
     brake_torque_max_N_m: PerWheel = computed(
         "N m", "largest brake torque transmitted to a wheel", shown=~(Shown.SUMMARY | Shown.STUDY))
+    speed_at_first_lock_m_s: float | None = computed(
+        "m/s", "speed of the wagon when the first wheel locked; none when none did", Place.WHEELS,
+        line=Told(8, "speed at the first lock", ".2f", "m/s"), default_factory=lambda: None)
     slide_protection_cycles: float | None = computed(
         "1", "how often slide protection began to vent, all wheelsets; none without it", shown=~Shown.STUDY)
     slide_protection_air: float | None = computed(
         "1", "air that slide protection used: fillings of one wheelset's brake, all wheelsets; none without it",
         shown=~Shown.STUDY)
-    speed_at_first_lock_m_s: float | None = computed(
-        "m/s", "speed of the wagon when the first wheel locked; none when none did", Place.WHEELS,
-        line=Told(8, "speed at the first lock", ".2f", "m/s"), default_factory=lambda: None)
     mean_total_wheel_load_N: float = computed(
         "N", "sum of all wheel loads, mean from onset to stop", shown=~Shown.JSON,
         line=Told(9, "mean sum of wheel loads / weight - 1", ".1e"))

@@ -16,6 +16,7 @@ from slosh_cli.results.point_stop import mean_tau
 from slosh_cli.results.recommendation import stop_deceleration
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario, rail_reach
+from slosh_cli.scenario.schema_limits import Limits
 from slosh_cli.section import section_of
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.wagon.model import POSITION, wagon_model
@@ -69,6 +70,7 @@ def _mass_checks(scenario: Scenario) -> Iterator[Check]:
 
 def _axle_check(scenario: Scenario) -> Check:
     axle, limit = total_mass(scenario) / 4e3, scenario.limits.axle_load / 1e3
+    standing, source = scenario.limits.standing_of(("axle_load",), "standard", "EN 15528, line category D")
     return Check(
         "axle load in t",
         "operation",
@@ -76,22 +78,24 @@ def _axle_check(scenario: Scenario) -> Check:
         limit,
         f"Overload: each axle carries {axle:.1f} t; most lines end at 22.5 t (category D, EN 15528), the limit here is "
         f"{limit:g} t. Check masses, liquid density and fill.",
-        "standard",
-        "EN 15528, line category D",
+        standing,
+        source,
     )
 
 
 def _tau_check(scenario: Scenario) -> Check:
     """The brake against what wagons with and without wheel slide protection are built for."""
     tau, limits, protected = mean_tau(scenario), scenario.limits, scenario.braking.slide_protection is not None
+    key, usual = "tau_with_protection" if protected else "tau", Limits()
+    most: float = getattr(limits, key)
     meaning = (
-        f"The brake asks for {tau:.3f} of the weight, on average of the way; wagons without wheel slide protection are "
-        f"built for at most {limits.tau:g}, with it {limits.tau_with_protection:g}."
+        f"The brake asks for {tau:.3f} of the weight, on average of the way; the limit here is {most:g}. Wagons are "
+        f"built for at most {usual.tau:g} without wheel slide protection, {usual.tau_with_protection:g} with it."
     )
-    if tau > limits.tau_with_protection:
+    if tau > usual.tau_with_protection:
         meaning += " No freight wagon has such a brake."
-    most = limits.tau_with_protection if protected else limits.tau
-    return Check("brake force over weight (tau)", "operation", tau, most, meaning, "indicative", _TAU_SOURCE)
+    standing, source = limits.standing_of((key,), "indicative", _TAU_SOURCE)
+    return Check("brake force over weight (tau)", "operation", tau, most, meaning, standing, source)
 
 
 def shell_mass(scenario: Scenario) -> float:

@@ -1,17 +1,30 @@
 """What verdicts hold a wagon, its brake and its load against; every limit has a usual value."""
 
-from typing import Annotated
+from collections.abc import Iterator
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Number, Quantity, Range
+from slosh_cli.scenario.rules import Finding, Values
+from slosh_cli.scenario.units import shown
 
 _SHARE = Range(0.0, 1.0)
 
 
+def _low_below_high(v: Values) -> Iterator[Finding]:
+    """Shares that are not allowed lie between the two; the wrong way round they would allow everything."""
+    if v.has("filling_low", "filling_high") and v["filling_low"] > v["filling_high"]:
+        rule = f"must be at most `filling_high`, {shown(v['filling_high'])}"
+        fix = "write a lower value, or a higher `filling_high`"
+        yield Finding(("filling_low",), rule, f"`{shown(v['filling_low'])}`", fix)
+
+
 class Limits(Part):
     """Limits of verdicts, and what they need to know of the substance. Verdicts change no other answer."""
+
+    rules = (_low_below_high,)
 
     axle_load: Annotated[float, Quantity("mass", Range(1e3, 1e5), "22.5 t")] = Field(
         default=22_500.0, description="Largest axle load, kg; category D of EN 15528 where it is left out."
@@ -58,3 +71,10 @@ class Limits(Part):
         description="Mean cubical expansion of the liquid from 15 to 50 degC, a number per kelvin; about gasoline's "
         "where it is left out.",
     )
+
+    def standing_of(
+        self, keys: tuple[str, ...], usual: Literal["standard", "indicative", "assumed"], source: str
+    ) -> tuple[Literal["standard", "indicative", "assumed"], str]:
+        """Standing and source of the limits under `keys`: the usual ones, or that the scenario has its own."""
+        own = [f"limits.{key}" for key in keys if getattr(self, key) != type(self).model_fields[key].default]
+        return ("assumed", f"{', '.join(own)} of the scenario; usual: {source}") if own else (usual, source)

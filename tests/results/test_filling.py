@@ -1,5 +1,7 @@
 """What the law for dangerous goods says of a filling (ADR 4.3.2.2), as a verdict with its source."""
 
+import math
+
 import pytest
 
 from slosh_cli.results.filling import degree_of_filling, filling_checks
@@ -50,6 +52,33 @@ def test_walls_thick_liquids_and_other_limits(shipped, overrides, opening, allow
     """Four walls leave parts of 8 m^3."""
     surge, _ = told(boxed(shipped, 0.5, *overrides, baffles=WALLS.replace("OPEN", opening) if opening else ""))
     assert surge.within is allowed
+
+
+@pytest.mark.parametrize("share", [0.2, 0.8])
+def test_a_volume_of_just_the_allowed_share_is_allowed(shipped, share):
+    """The fill that belongs to a volume is found by iteration; its last digits decide nothing."""
+    for radius in (1.07, 1.21, 1.33, 1.48, 1.57):
+        volume = share * math.pi * radius**2 * 15.5
+        size = (f"tank.radius={radius} m", "tank.liquid.model=rigid")
+        just = shipped("tank_wagon", *size, f"tank.volume={volume!r} m^3")
+        assert told(just)[0].within
+        inside = volume * (1.001 if share < 0.5 else 0.999)
+        assert not told(shipped("tank_wagon", *size, f"tank.volume={inside!r} m^3"))[0].within
+
+
+@pytest.mark.parametrize("own", ["filling_low=0.3", "filling_high=0.7", "part_volume=9 m^3", "wall_opening=0.2"])
+def test_a_limit_of_the_scenario_is_not_called_the_law_s(shipped, own):
+    surge, room = told(boxed(shipped, 0.5, f"limits.{own}"))
+    assert surge.standing == "assumed"
+    assert surge.source.startswith(f"limits.{own.partition('=')[0]} of the scenario; usual: ADR 4.3.2.2.4")
+    assert surge.source in surge.meaning
+    assert room.source.startswith("ADR 4.3.2.2.1")
+
+
+@pytest.mark.parametrize(("degree", "standing"), [(0.98, "indicative"), (0.95, "indicative"), (0.9, "assumed")])
+def test_the_law_knows_four_degrees(shipped, degree, standing):
+    _, room = told(boxed(shipped, 0.5, f"limits.filling_degree={degree}"))
+    assert room.standing == standing
 
 
 def test_the_liquid_keeps_room_to_expand(shipped):

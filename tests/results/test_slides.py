@@ -42,6 +42,12 @@ def test_the_verdict_names_wheel_time_speed_way_and_flat(shipped):
     assert slide_check([], shipped("paper_80")).within
 
 
+def test_long_slides_have_plain_digits(shipped):
+    check = slide_check([Slide(1, 90.0, 1.0, 44.4, 2346.0, 5e8)], shipped("paper_80"))
+    assert "slides 2350 m at a stretch" in check.meaning
+    assert "e+" not in check.meaning
+
+
 def test_the_first_lock_and_the_slide_are_those_of_the_history(stop):
     result = stop("paper_80_solid", HARD, "output.interval=1 ms")
     still = np.abs(result.channels[wheel(4, "speed")]) < 1e-9
