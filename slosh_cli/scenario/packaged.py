@@ -43,7 +43,7 @@ def packaged_text(path: Path, name: str = "") -> tuple[str, str]:
 
 
 def find_packaged(name: str, *, trains: bool = False) -> Path:
-    """The path of a packaged scenario, with `trains` of a train too, by its name or file name, with or without ``.yaml``.
+    """The path of a packaged scenario (or train) by its name or by its file name, with or without ``.yaml``.
 
     Raises UsageError with the names there are.
     """
