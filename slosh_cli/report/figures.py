@@ -132,6 +132,32 @@ def _slosh(record: Record) -> Figure:
     return figure
 
 
+def _brake(record: Record) -> Figure:
+    """Application of the brake, friction where the brake has it, torque of the outer wheels: held and transmitted."""
+    shares = [0.8, 0.8, 1.4] if wheel(1, "friction") in record.channels else [0.8, 1.4]
+    figure, (applied, *middle, torque) = _panels(record, "The brake", shares, height=7.4)
+    applied.plot(record.time, 100.0 * record.channels["brake_application"], color=INK, label="application")
+    applied.set_ylabel("part of the\nfull force / %")
+    for i in _ENDS:
+        style, share = _WHEEL_STYLES[i], record.channels.get(wheel(i, "slide_protection_share"))
+        if share is not None:
+            left = {"label": f"left by slide protection, wheel {i}", "linewidth": 1.0}
+            applied.plot(record.time, 100.0 * share, **style | left)
+        for axes in middle:
+            axes.plot(record.time, record.channels[wheel(i, "friction")], **style)
+            axes.set_ylabel("friction\ncoefficient")
+        held, label = record.channels[wheel(i, "held_torque")] / 1e3, "that the brakes can hold" if i == 1 else None
+        torque.plot(record.time, held, color="#bdbdbd", linewidth=3.5, label=label)
+        torque.plot(record.time, record.channels[wheel(i, "brake_torque")] / 1e3, **style)
+    torque.set_ylabel("brake torque\nper wheel / kN m")
+    _legend(applied, columns=3)
+    _legend(torque, columns=3)
+    for axes in (applied, *middle, torque):
+        axes.set_ylim(bottom=0.0)
+        _mark_onset(record, axes, named=axes is applied)
+    return figure
+
+
 def _line(record: Record) -> Figure:
     """The stop against the distance, and under it the line: its height with the gradient, the level of its rails."""
     position, rows = record.channels["position"], _line_rows(record)
@@ -170,6 +196,7 @@ FIGURES: Final[Mapping[str, Callable[[Record], Figure]]] = {
     "speed_distance": _speed_distance,
     "wheel_speed": _wheel_speed,
     "slosh": _slosh,
+    "brake": _brake,
     "line": _line,
 }
 """Every figure of a run, by the name of its files."""

@@ -136,14 +136,19 @@ def _conditions(study: Study, page: str) -> str:
     words = [page] if page else []
     words += [f"{name_of(axis)} {axis.values[0]}" for axis in fixed]
     keys = {axis.key for axis in study.axes}
-    if TORQUE not in keys:
-        words.append(f"{nominal_torque(study.base) / 1e3:g} kN m per wheel")
+    brake, told = study.base.braking, {".".join(key.split(".")[:2]) for key in keys}
+    if told.isdisjoint(f"braking.{key}" for key in ("torque", *brake.rivals("torque"))):
+        words.append("blocks" if brake.blocks else "discs" if brake.discs else _torque(study))
     tank = study.base.tank
     words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
-    words += [f"fill {tank.fill:g}"] if "tank.fill" not in keys else []
+    words += [f"fill {tank.fill:g}"] if told.isdisjoint(f"tank.{key}" for key in ("fill", *tank.rivals("fill"))) else []
     rail = next((name for name, adhesion in ADHESIONS.items() if adhesion == study.base.contact.adhesion), "")
     words += [f"{rail} rail"] if rail and not any(key.startswith("contact.adhesion") for key in keys) else []
     return f"{study.name}: {', '.join(words)}"
+
+
+def _torque(study: Study) -> str:
+    return f"{nominal_torque(study.base) / 1e3:g} kN m per wheel"
 
 
 def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> Mark:

@@ -185,7 +185,13 @@ class Record(Answers):
 
     def has_figure(self, name: str) -> bool:
         """Whether there is what the figure `name` shows: a liquid, a line that is not level or not even."""
-        return {"slosh": self.has_liquid, "line": not LINE_CHANNELS.keys().isdisjoint(self.channels)}.get(name, True)
+        applied = self.channels.get("brake_application", np.zeros(0))  # files of earlier versions have none
+        suits = {
+            "slosh": self.has_liquid,
+            "brake": bool(np.any(applied % 1.0)) or wheel(1, "friction") in self.channels,
+            "line": not LINE_CHANNELS.keys().isdisjoint(self.channels),
+        }
+        return suits.get(name, True)
 
     def locked_stretches(self, i: int) -> list[tuple[float, float]]:
         """Start and duration in s of every stretch in which wheel `i` stands while the wagon moves."""

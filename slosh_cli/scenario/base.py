@@ -77,6 +77,7 @@ class Part(BaseModel):
         schema = cls.model_json_schema()
         for definition in (*schema.get("$defs", {}).values(), schema):
             properties = definition["properties"].items()
+            definition["title"] = definition["title"].lstrip("_")
             tags = [name for name, entry in properties if "const" in entry and "default" in entry]
             if tags:
                 definition["required"] = [*tags, *definition.get("required", ())]

@@ -40,6 +40,11 @@ class Document:
                 return self.origins[path[:end]]
         return Origin()
 
+    def overridden(self, path: Path) -> bool:
+        """Whether an override gave the value at `path`, the mapping around it or anything below it."""
+        below = (origin for place, origin in self.origins.items() if place[: len(path)] == path)
+        return bool(self.origin(path).override) or any(origin.override for origin in below)
+
     def add(self, finding: Finding) -> None:
         """Keep a finding as a problem with its place."""
         origin = self.origin(finding.path)

@@ -208,6 +208,6 @@ def _put(document: Document, model: type[Part], path: tuple[str, ...], value: An
     for end, (spot, inner) in enumerate(ways):
         chosen = spot.chosen(inner) if spot and isinstance(inner, dict) else None
         for other in chosen.part.rivals(path[end]) if chosen and chosen.part else ():
-            if not document.origin((*normal[:end], other)).override:
+            if not document.overridden((*normal[:end], other)):
                 document.remove((*normal[:end], other))
     document.replace(path, value, place)

@@ -136,10 +136,12 @@ class Wagon(Part):
     running_resistance: RunningResistance = Field(description="Running resistance of the whole wagon.")
     wheel_flats: tuple[WheelFlat, ...] = Field(default=(), description="Flats on wheels, one per wheel at most.")
     length_over_buffers: Annotated[float | None, Quantity("length", Range(3.0, 100.0), "17 m")] = Field(
-        default=None, description="Length that the wagon takes in a train, m. Default: the pivot spacing and 5 m."
+        default=None,
+        description="Length that the wagon takes in a train, m; a wagon alone does not use it. "
+        "Default: the pivot spacing and 5 m.",
     )
     coupling_height: Annotated[float, Quantity("length", Range(0.2, 4.0), "1.06 m")] = Field(
-        default=_COUPLING_HEIGHT, description="Height of the couplings above the rail head, m."
+        default=_COUPLING_HEIGHT, description="Height of the couplings above the rail head, m; matters in a train."
     )
 
     @property

@@ -124,7 +124,7 @@ def _resolving_step(vehicle):
 
 @inner_kernel
 def _full_slowing(vehicle, time, step):
-    """Deceleration (m/s^2) of a vehicle; where its brake builds up within the `step` (s), what it will give in full.
+    """Deceleration (m/s^2) of a vehicle; where its brake builds up within the `step` (s), that of the full brake.
 
     While the deceleration grows from nothing to A in steps h, the energy that these leave out adds up to that of one
     growth by A: with `A h` within the bound it stays below the tolerance, with `a h` of the instant it would not.

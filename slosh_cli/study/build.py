@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from slosh_cli.errors import UsageError, ValueRefused
-from slosh_cli.scenario import Scenario, find_packaged, load_scenario, scenario_to_yaml
+from slosh_cli.scenario import Braking, Scenario, find_packaged, load_scenario, scenario_to_yaml
+from slosh_cli.scenario.train_file import is_train_file
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values, expanded, measured
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
@@ -64,7 +65,7 @@ def grid(
 
 
 def _completed(wishes: Wishes, file: str, name: str, base: Scenario, axes: tuple[Axis, ...]) -> Study:
-    axes = _with_axes(axes, _braking_axes(wishes, axes))
+    axes = _with_axes(axes, _braking_axes(wishes, base, axes))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
     return Study(name, base, axes, file, wishes.histories)
 
@@ -86,19 +87,27 @@ def _source(
     if is_study_file(Path(source)):
         study = read_study_file(Path(source))
         return str(source), study.name, load_scenario(study.base, overrides), study.axes
+    if is_train_file(Path(source)):
+        raise UsageError(f"{source} is a train; studies are of wagons, so run it with `slosh run --set`", str(source))
     scenario = load_scenario(source, overrides)
     return str(source), scenario.name, scenario, ()
 
 
-def _braking_axes(wishes: Wishes, axes: Sequence[Axis]) -> list[Axis]:
-    """Speeds and torques: those asked for; those of Figure 3 where they complete it."""
+def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis]) -> list[Axis]:
+    """Speeds and torques: those asked for; those of Figure 3 where they complete it.
+
+    A brake that is told by anything but its torque, in the scenario or by an axis, stays what it is.
+    """
     varied = {axis.key for axis in axes}
+    rivals = {f"braking.{key}" for key in Braking.rivals("torque")}
+    others = base.braking.torque is None or any(".".join(key.split(".")[:2]) in rivals for key in varied)
     for option, spec, key in (("--v0", wishes.speeds, SPEED), ("--torque", wishes.torques, TORQUE)):
         if spec is not None and any(text.partition("=")[0].strip() == key for text in wishes.vary):
             raise UsageError(f"{option} and --vary {key} ask for the same; leave one of them out", option)
     figure = (wishes.speeds, wishes.torques) != (None, None) or not axes
     speeds = _SPEEDS if wishes.speeds is None and figure and SPEED not in varied else wishes.speeds
-    torques = _TORQUES if wishes.torques is None and figure and TORQUE not in varied else wishes.torques
+    completes = wishes.torques is None and figure and TORQUE not in varied and not others
+    torques = _TORQUES if completes else wishes.torques
     found = []
     if speeds is not None:
         found.append(_axis(SPEED, speeds, "--v0", "km/h"))

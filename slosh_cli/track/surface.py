@@ -32,7 +32,7 @@ _RINGING = 3.0
 
 
 class RollingSurface(Block):
-    """Shape of rails and wheels; `uneven` is 0 where both are even.
+    """Shape of rails and wheels; `uneven` is 0 where both are even. The rail sets in over `smooth_start` (m).
 
     The rail's height is `f (cos(carrier x) a - sin(carrier x) b)` at x, which is `ahead` (wheels,) m of the vehicle's
     place: `shape` (n, 4) holds a and b with their slopes at the `knots` (n,) m, with cubics between them. It repeats
@@ -41,6 +41,7 @@ class RollingSurface(Block):
     """
 
     uneven: int
+    smooth_start: float
     ahead: Vector
     knots: Vector
     shape: Matrix
@@ -53,8 +54,8 @@ class RollingSurface(Block):
     @inner_kernel
     def rail(self, wheel, place):
         """Height (m) of the unloaded rail under a wheel of a vehicle at the `place` (m), and its derivative by it."""
-        begun = min(max(place / SMOOTH_START, 0.0), 1.0)
-        part, part_slope = begun * begun * (3.0 - 2.0 * begun), 6.0 * begun * (1.0 - begun) / SMOOTH_START
+        begun = min(max(place / self.smooth_start, 0.0), 1.0)
+        part, part_slope = begun * begun * (3.0 - 2.0 * begun), 6.0 * begun * (1.0 - begun) / self.smooth_start
         height, slope = self.height(place + self.ahead[wheel])
         return part * height, part * slope + part_slope * height
 
@@ -145,7 +146,9 @@ def _cubic(shape, cell, column, width, part):
 
 def even_surface(wheels: int = 4) -> RollingSurface:
     """Straight rails and round wheels."""
-    return RollingSurface.blank(wheels, knots=np.zeros(0), shape=np.zeros((0, 4)), longest_way=math.inf)
+    return RollingSurface.blank(
+        wheels, smooth_start=SMOOTH_START, knots=np.zeros(0), shape=np.zeros((0, 4)), longest_way=math.inf
+    )
 
 
 def rolling_surface(

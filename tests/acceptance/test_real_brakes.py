@@ -74,3 +74,13 @@ def test_histories_tell_the_application_friction_and_torques(stop):
     np.testing.assert_allclose(transmitted[~locked], held[~locked], rtol=1e-6, atol=1.0)
     assert transmitted.max() <= found.brake_torque_max_N_m[3] * (1.0 + 1e-9)
     assert found.brake_torque_max_N_m[3] == pytest.approx(transmitted.max(), rel=2e-2)
+
+
+def test_a_brake_has_its_figure_where_there_is_something_to_see(stop):
+    from slosh_cli import plot
+
+    assert "brake" not in plot(stop("paper_80_solid"))
+    drawn = plot(stop("paper_80_solid", CAST_IRON, "braking.application=P", "braking.slide_protection={}"))["brake"]
+    labels = [axes.get_ylabel().replace("\n", " ") for axes in drawn.axes]
+    assert labels == ["part of the full force / %", "friction coefficient", "brake torque per wheel / kN m"]
+    assert len(plot(stop("paper_80_solid", "braking.application=P"))["brake"].axes) == 2

@@ -59,7 +59,7 @@ def names(folder: Path) -> set[str]:
     return {file.name for file in folder.iterdir()}
 
 
-DRAWN = {f"{name}.{kind}" for name in figures.FIGURES if name != "line" for kind in figures.FORMATS}
+DRAWN = {f"{name}.{kind}" for name in figures.FIGURES if name not in ("brake", "line") for kind in figures.FORMATS}
 
 
 def test_files_lie_in_the_folder_named_after_the_scenario(slosh: Slosh, solver: Solver, tmp_path: Path) -> None:

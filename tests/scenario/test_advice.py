@@ -101,10 +101,11 @@ def test_a_quantity_of_another_kind_is_answered_with_an_example() -> None:
     for leaf in QUANTITIES.values():
         others = [unit for unit in kinds if measures(unit) != measures(UNITS.get(leaf.dimension, [[("L", 9)]])[0])]
         for unit in others:
-            if leaf.dimension == "acceleration" and unit == [("g", 1)]:
-                continue  # of gravity
+            text = quantity(unit, chance).text
+            if leaf.dimension == "acceleration" and text.endswith("g"):
+                continue  # `0.1 g` is a deceleration as well as a mass
             with pytest.raises(ValueRefused) as caught:
-                leaf.parse(quantity(unit, chance).text)
+                leaf.parse(text)
             assert offers(caught.value.fix) == []
             assert f"such as `{leaf.example}`" in caught.value.fix
 

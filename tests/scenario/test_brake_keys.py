@@ -130,3 +130,9 @@ def test_what_is_no_brake_is_refused_with_the_reason(braked, keys, words):
     with pytest.raises(ScenarioError) as refused:
         braked(keys)
     assert words in str(refused.value)
+
+
+def test_what_only_a_train_needs_may_stand_in_a_wagon(shipped):
+    wagon = shipped("paper_80", "wagon.length_over_buffers=17.5 m", "wagon.coupling_height=1.05 m").wagon
+    assert (wagon.length_in_train, wagon.coupling_height) == (17.5, 1.05)
+    assert shipped("paper_80").wagon.length_in_train == 17.0

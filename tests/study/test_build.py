@@ -9,7 +9,7 @@ from study_tools import PAPER
 
 from slosh_cli.errors import ScenarioError, UsageError
 from slosh_cli.scenario import Scenario, find_packaged
-from slosh_cli.study.build import Wishes, build
+from slosh_cli.study.build import Wishes, build, grid
 from slosh_cli.study.key import stop_key
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
 from slosh_cli.study.study_file import is_study_file
@@ -226,3 +226,14 @@ def test_a_study_that_is_no_yaml_is_told_so_as_a_study(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text("base: paper-80-liquid\nvary: {tank.fill: [0.3\n", encoding="utf-8")
     assert is_study_file(tmp_path / "s.yaml")
     assert not is_study_file(tmp_path / "nowhere.yaml")
+
+
+def test_a_brake_that_is_told_otherwise_keeps_its_torque(shipped):
+    """Torques of Figure 3 would displace the blocks, and every row would tell of another brake."""
+    blocks = shipped("paper_80", "braking.blocks={count: 2, force: 25 kN, friction: cast-iron}")
+    vary = {"braking.initial_speed": "80 km/h", "braking.blocks.friction": "cast-iron,0.15"}
+    assert "braking.torque" not in [axis.key for axis in grid(blocks, vary).axes]
+    assert "braking.torque" not in [axis.key for axis in grid(blocks, {}).axes]
+    assert "braking.torque" in [axis.key for axis in grid(shipped("paper_80"), {}).axes]
+    with pytest.raises(ScenarioError, match="must not be given beside `torque`"):
+        grid(blocks, vary | {"braking.torque": "5 kN m"}).check()

@@ -232,3 +232,17 @@ def test_drawing_a_study_does_not_import_what_only_runs_need() -> None:
     code = "import sys, slosh_cli.report.study_figures; print(*{'numba', 'pandas', 'h5py'} & set(sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert run.stdout.split() == []
+
+
+def test_a_figure_tells_no_torque_of_a_brake_that_varies(shipped) -> None:
+    from slosh_cli.report import study_pages
+    from slosh_cli.study.build import grid
+
+    blocks = shipped("paper_80", "braking.blocks={count: 2, force: 25 kN, friction: cast-iron}")
+    kept, varied = (grid(blocks, vary) for vary in ({"braking.application": "P,G"}, {"braking.blocks.count": "1,2"}))
+    assert "blocks" in study_pages._conditions(kept, "")
+    assert "blocks" not in study_pages._conditions(varied, "")
+    assert "kN m" not in study_pages._conditions(kept, "") + study_pages._conditions(varied, "")
+    masses = grid(shipped("paper_80_solid"), {"tank.mass": "30 t, 40 t"})
+    assert "fill" not in study_pages._conditions(masses, "")
+    assert "5 kN m per wheel" in study_pages._conditions(masses, "")
