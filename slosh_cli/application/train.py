@@ -1,4 +1,4 @@
-"""One stop of a train: its simulation, its files."""
+"""The files of a train's stop."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping, by_kind
 from slosh_cli.report import FORMATS, TRAIN_FIGURES
-from slosh_cli.scenario.train_file import TrainScenario, load_train
 
 if TYPE_CHECKING:
     from slosh_cli.results.train_result import TrainResult
-    from slosh_cli.solver.run import Cancel, Progress
 
 _HISTORY: Final = "run.h5"
 _SUMMARY: Final = "summary.csv"
@@ -26,16 +24,6 @@ TRAIN_FILES: Final = (
     *(f"{name}.{suffix}" for name in TRAIN_FIGURES for suffix in FORMATS),
 )
 """Every file that a train's run may write, its history first."""
-
-
-def simulate_train(
-    train: TrainScenario | str | Path, *, progress: Progress | None = None, cancel: Cancel | None = None
-) -> TrainResult:
-    """Integrate the stop of a train, or of its file; the rest as for `simulate`."""
-    from slosh_cli.results.simulate import simulate_train as integrated
-
-    found = train if isinstance(train, TrainScenario) else load_train(train)
-    return integrated(found, progress=progress, cancel=cancel)
 
 
 def keep_train(result: TrainResult, folder: Path, keeping: Keeping, *, figures: bool = True) -> dict[str, Any]:

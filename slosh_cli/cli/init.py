@@ -29,18 +29,21 @@ def init_command(
         packaged_scenarios,
         packaged_text,
     )
+    from slosh_cli.scenario.packaged import packaged_trains
     from slosh_cli.scenario.words import file_safe
 
+    every = packaged_scenarios() | packaged_trains()
     if names:
-        say("\n".join(packaged_scenarios()))
+        say("\n".join(every))
         return ExitCode.DONE
-    source = find_packaged(name)
+    source = find_packaged(name, trains=True)
     own_name, text = packaged_text(source, file_safe(output.stem) if output else "")
     file = output or Path(f"{own_name}.yaml")
     _write_new(file, text)
-    then = f", run it with `slosh run {file}`" if isinstance(load_any_scenario(source), Scenario) else ""
+    runs = source in packaged_trains().values() or isinstance(load_any_scenario(source), Scenario)
+    then = f", run it with `slosh run {file}`" if runs else ""
     say(f"{file} written. Change it, check it with `slosh check {file}`{then}.")
-    others = [other for other, path in packaged_scenarios().items() if path != source]
+    others = [other for other, path in every.items() if path != source]
     if others:
         say(f"Others to start from: {', '.join(others)}.")
     return ExitCode.DONE

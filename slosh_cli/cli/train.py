@@ -86,8 +86,8 @@ def plot_train(history_file: Path, folder: Path) -> ExitCode:
 
 def _simulate(train: "TrainScenario") -> "TrainResult":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
-    from slosh_cli.application.train import simulate_train
     from slosh_cli.cli.progress import RunProgress, announce_solver
+    from slosh_cli.results.simulate import simulate_train
 
     models = {one.tank.liquid.model for one in train.vehicles}
     announce_solver(models if len(models) == 1 else models - {"rigid"})

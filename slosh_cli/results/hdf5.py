@@ -1,16 +1,14 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
-import io
-import os
 import platform
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import h5py
 import numpy as np
@@ -18,7 +16,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
-from slosh_cli.results.files import FileError, replacing
+from slosh_cli.results.files import FileError, SteadyFile, replacing
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.results.train_result import StoredPart, TrainHistory, TrainResult
@@ -128,7 +126,7 @@ def _write(
     HDF5 does not survive a disk that is full, or ends the process with it; so it never gets to know.
     """
     with replacing(path) as temporary, temporary.open("xb+") as target:
-        steady = _SteadyFile(target)
+        steady = SteadyFile(target)
         with h5py.File(steady, "w") as file:
             axis = _write_channel(file, TIME, time)
             axis.make_scale(TIME.name)
@@ -265,61 +263,3 @@ def _unreadable(path: Path) -> Iterator[None]:
         yield
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise FileError(f"cannot read {path} as a slosh history (HDF5): {error}", where=str(path)) from error
-
-
-class _SteadyFile(io.RawIOBase):
-    """A binary file that takes everything it is given; `trouble` is why the disk did not, None where it did."""
-
-    def __init__(self, file: BinaryIO) -> None:
-        self._file = file
-        self._place = self._end = 0
-        self.trouble: OSError | KeyboardInterrupt | None = None
-
-    def readable(self) -> bool:
-        return True
-
-    def writable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        self._place = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._place, os.SEEK_END: self._end}[whence]
-        return self._place
-
-    def tell(self) -> int:
-        return self._place
-
-    def write(self, data: Any) -> int:
-        count = memoryview(data).nbytes
-        self._try(lambda: self._file.write(data))
-        self._place += count
-        self._end = max(self._end, self._place)
-        return count
-
-    def readinto(self, buffer: Any) -> int:
-        view = memoryview(buffer).cast("B")
-        view[:] = bytes(len(view))
-        self._try(lambda: self._file.readinto(view))  # type: ignore[attr-defined]
-        self._place += len(view)
-        return len(view)
-
-    def truncate(self, size: int | None = None) -> int:
-        self._end = self._place if size is None else size
-        self._try(lambda: self._file.truncate(self._end))
-        return self._end
-
-    def flush(self) -> None:
-        if not self.closed:
-            self._try(self._file.flush)
-
-    def _try(self, action: Callable[[], object]) -> None:
-        """Carry `action` out at the present place, unless the disk has refused before."""
-        if self.trouble is not None:
-            return
-        try:
-            self._file.seek(self._place)
-            action()
-        except (OSError, KeyboardInterrupt) as error:  # neither may pass through HDF5
-            self.trouble = error

@@ -20,9 +20,16 @@ def _folder() -> Path:
 
 def packaged_scenarios() -> dict[str, Path]:
     """Name (as written in the file) to path of every scenario that comes with the program, sorted by name."""
-    found = {}
-    for path in _folder().glob("*.yaml"):
-        found[packaged_text(path)[0]] = path
+    return _named(_folder())
+
+
+def packaged_trains() -> dict[str, Path]:
+    """The same of trains."""
+    return _named(_folder() / "trains")
+
+
+def _named(folder: Path) -> dict[str, Path]:
+    found = {packaged_text(path)[0]: path for path in folder.glob("*.yaml")}
     return dict(sorted(found.items()))
 
 
@@ -35,12 +42,12 @@ def packaged_text(path: Path, name: str = "") -> tuple[str, str]:
     return name, _NAME.sub(f"name: {name}", text, count=1)
 
 
-def find_packaged(name: str) -> Path:
-    """The path of a packaged scenario by its name or by its file name, with or without ``.yaml``.
+def find_packaged(name: str, *, trains: bool = False) -> Path:
+    """The path of a packaged scenario (or train) by its name or by its file name, with or without ``.yaml``.
 
     Raises UsageError with the names there are.
     """
-    known = packaged_scenarios()
+    known = packaged_scenarios() | (packaged_trains() if trains else {})
     for key, path in known.items():
         if name in (key, path.stem, path.name):
             return path

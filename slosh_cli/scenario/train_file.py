@@ -117,9 +117,7 @@ class TrainScenario:
         return "---\n".join([scenario_to_yaml(self.file), *kinds])
 
 
-class _Wish(
-    NamedTuple
-):  # an override of vehicles: the place from the front or None for all, key path, value, as written
+class _Wish(NamedTuple):  # an override of vehicles: place from the front, None for all; key; value; as it is written
     place: int | None
     key: str
     value: str

@@ -109,6 +109,12 @@ def _of_one_kind(vehicles: list[Vehicle]) -> tuple[Vehicle, ...]:
     """The vehicles with their liquids as blocks of one class, so that they make a list."""
     if len({vehicle.kind for vehicle in vehicles}) == 1:
         return tuple(vehicles)
+    if any(isinstance(vehicle.liquid, CellLiquid) for vehicle in vehicles):
+        raise PhysicsError(
+            "A train whose tanks have shallow-water liquids must have them in all vehicles: give the others "
+            "`tank.liquid.model: shallow-water` too, or these `modal` or `rigid`.",
+            "vehicles",
+        )
     still = modal_liquid((), STANDARD_GRAVITY, HALF)
     return tuple(v if isinstance(v.liquid, ModalLiquid) else v.replaced(liquid=still) for v in vehicles)
 

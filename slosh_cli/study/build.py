@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.scenario import Braking, Scenario, find_packaged, load_scenario, scenario_to_yaml
+from slosh_cli.scenario.train_file import is_train_file
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values, expanded, measured
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
@@ -86,6 +87,8 @@ def _source(
     if is_study_file(Path(source)):
         study = read_study_file(Path(source))
         return str(source), study.name, load_scenario(study.base, overrides), study.axes
+    if is_train_file(Path(source)):
+        raise UsageError(f"{source} is a train; studies are of wagons, so run it with `slosh run --set`", str(source))
     scenario = load_scenario(source, overrides)
     return str(source), scenario.name, scenario, ()
 

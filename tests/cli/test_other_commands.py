@@ -11,6 +11,7 @@ from stand_ins import PAPER, Slosh, Solver
 
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.scenario import Scenario, load_any_scenario, load_scenario, packaged_scenarios
+from slosh_cli.scenario.packaged import packaged_trains
 
 
 def test_init_writes_a_scenario_that_is_sound_and_commented(slosh: Slosh, tmp_path: Path) -> None:
@@ -52,7 +53,7 @@ def test_init_never_overwrites(slosh: Slosh, tmp_path: Path) -> None:
 
 
 def test_init_lists_the_packaged_scenarios(slosh: Slosh, tmp_path: Path) -> None:
-    assert slosh("init", "--list").out.split() == list(packaged_scenarios())
+    assert slosh("init", "--list").out.split() == [*packaged_scenarios(), *packaged_trains()]
     assert list(tmp_path.iterdir()) == []
 
 
