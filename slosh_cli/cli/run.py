@@ -21,7 +21,7 @@ def run_command(
     as_json: AsJson = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figures.")] = False,
 ) -> ExitCode:
-    """Simulate one stop of a wagon or of a train: history (HDF5), summary (CSV) and figures.
+    """One stop of a wagon or a train: history (HDF5), CSV, figures.
 
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.

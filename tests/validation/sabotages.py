@@ -151,7 +151,7 @@ SABOTAGES: dict[str, Sabotage] = {
         "gradient", "solver.setup", "_line", "0.0 - STANDARD_GRAVITY *", "STANDARD_GRAVITY *", "distance on 30 permille"
     ),
     "gradient_profile": edit(
-        "gradient", "solver.setup", "_line", "points[:, 0].copy()", "points[:1, 0].copy()", "profile"
+        "gradient", "solver.setup", "_line", "points[:, 0] + behind", "points[:1, 0] + behind", "profile"
     ),
     "gradient_liquid": edit(
         "gradient", "solver.stage", "read_ride", "acceleration - ride.pull[stage]", "acceleration", "surface", copy=True
