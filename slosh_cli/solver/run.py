@@ -18,6 +18,7 @@ from slosh_cli.solver.setup import ReadyStop
 from slosh_cli.solver.train import Train
 from slosh_cli.solver.vehicle import FOUNDATION
 from slosh_cli.tank.cells import CellLiquid
+from slosh_cli.tank.mixed import own_liquid
 from slosh_cli.train.coupling import COUPLING_COLUMNS
 
 Progress = Callable[[float, float], None]
@@ -83,7 +84,8 @@ def integrate(problem: ReadyStop, progress: Progress | None = None, cancel: Canc
 
 def _work_per_step(train: Train) -> int:
     """Rail nodes of all vehicles, and what takes the time of as many."""
-    cells = sum(v.liquid.shallow.cells for v in train.vehicles if isinstance(v.liquid, CellLiquid))
+    own = [own_liquid(vehicle.liquid) for vehicle in train.vehicles]
+    cells = sum(liquid.shallow.cells for liquid in own if isinstance(liquid, CellLiquid))
     return sum(vehicle.rail.nodes for vehicle in train.vehicles) + _NODES_PER_CELL * cells
 
 

@@ -21,6 +21,7 @@ from slosh_cli.tank.cells import CellLiquid, cell_liquid
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.load import FrozenLoad, frozen_load
+from slosh_cli.tank.mixed import of_one_class, own_liquid
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 from slosh_cli.tank.still import shallow_liquid
 from slosh_cli.track.contact import contact_model
@@ -70,8 +71,10 @@ class ReadyStop:
 
     @property
     def vehicle(self) -> Vehicle:
-        """The vehicle: a wagon alone is the train's one."""
-        return self.train.vehicles[self.place]
+        """The vehicle, its load as it is by itself: a wagon alone is the train's one."""
+        found = self.train.vehicles[self.place]
+        liquid = own_liquid(found.liquid)
+        return found if liquid is found.liquid else found.replaced(liquid=liquid)
 
     @property
     def weight(self) -> float:
@@ -107,16 +110,12 @@ def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> t
 
 def _of_one_kind(vehicles: list[Vehicle]) -> tuple[Vehicle, ...]:
     """The vehicles with their liquids as blocks of one class, so that they make a list."""
-    if len({vehicle.kind for vehicle in vehicles}) == 1:
-        return tuple(vehicles)
-    if any(isinstance(vehicle.liquid, CellLiquid) for vehicle in vehicles):
-        raise PhysicsError(
-            "A train whose tanks have shallow-water liquids must have them in all vehicles: give the others "
-            "`tank.liquid.model: shallow-water` too, or these `modal` or `rigid`.",
-            "vehicles",
-        )
-    still = modal_liquid((), STANDARD_GRAVITY, HALF)
-    return tuple(v if isinstance(v.liquid, ModalLiquid) else v.replaced(liquid=still) for v in vehicles)
+    own = [vehicle.liquid for vehicle in vehicles]
+    liquids = of_one_class(own, modal_liquid((), STANDARD_GRAVITY, HALF))
+    return tuple(
+        vehicle if liquid is vehicle.liquid else vehicle.replaced(liquid=liquid)
+        for vehicle, liquid in zip(vehicles, liquids, strict=True)
+    )
 
 
 def _vehicle(scenario: Scenario, behind: float) -> Vehicle:
