@@ -31,6 +31,7 @@ NAMES: Final = (
     "wheel-flat",
     "brakes",
     "stopping-table",
+    "couplings",
     "momentum",
     "energy",
     "second-code",

@@ -25,14 +25,15 @@ FILLS, TORQUES, LAG = (0.9, 0.5, 0.5, 0.3, 0.7), (7e3, 3e3, 5e3, 3e3, 6e3), 0.06
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["screw", "automatic"])
-def test_forces_of_couplings_are_those_of_a_second_program(shipped, name):
+def test_forces_of_couplings_are_those_of_a_second_program(shipped):
     each = [
-        shipped("paper_80", *RIGID, f"tank.fill={fill}", f"braking.torque={torque} N m", f"braking.onset={0.5 + LAG * k} s")
+        shipped(
+            "paper_80", *RIGID, f"tank.fill={fill}", f"braking.torque={torque} N m", f"braking.onset={0.5 + LAG * k} s"
+        )
         for k, (fill, torque) in enumerate(zip(FILLS, TORQUES, strict=True))
     ]
-    rows = integrate(train_problem(each, COUPLINGS[name])[0]).rows[:-1]
-    law = COUPLINGS[name]
+    rows = integrate(train_problem(each, COUPLINGS["screw"])[0]).rows[:-1]
+    law = COUPLINGS["screw"]
 
     def spring():
         push, pull = ((way.loading, way.unloading) for way in (law.compression, law.tension))
@@ -48,4 +49,4 @@ def test_forces_of_couplings_are_those_of_a_second_program(shipped, name):
     assert np.abs(ours).max() > 40e3
     deviation = np.abs(ours - forces).max() / np.abs(forces).max()
     assert deviation < 0.01, deviation
-    assert rows[:, :, 1].T == pytest.approx(places, rel=1e-4, abs=1e-3)
+    assert np.abs(rows[:, :, 1].T - places).max() < 1e-3

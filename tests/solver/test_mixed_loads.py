@@ -8,7 +8,12 @@ from slosh_cli.solver.run import integrate
 from slosh_cli.solver.setup import problem, train_problem
 
 MODELS = ("shallow-water", "rigid", "modal")
-SETTINGS = ("tank.coefficients=computed", "output.interval=0.1 s", "braking.torque=12 kN m", "braking.stop_speed=14 m/s")
+SETTINGS = (
+    "tank.coefficients=computed",
+    "output.interval=0.1 s",
+    "braking.torque=12 kN m",
+    "braking.stop_speed=14 m/s",
+)
 
 
 @pytest.fixture

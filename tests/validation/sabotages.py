@@ -235,6 +235,24 @@ SABOTAGES: dict[str, Sabotage] = {
         "braking.deceleration * total_mass",
         "level / m",
     ),
+    "couplings_half": edit(
+        "couplings", "solver.setup", "train_problem", "np.diff(places), HALF)", "np.diff(places), 1.0)", "two vehicles"
+    ),
+    "couplings_damping": edit(
+        "couplings", "train.coupling", "_law", "coupling.linear.damping if", "0.5 * coupling.linear.damping if", "chain"
+    ),
+    "couplings_branches": edit(
+        "couplings", "train.coupling", "_law", "return upper, lower, coup", "return lower, upper, coup", "beyond what"
+    ),
+    "couplings_push": edit(
+        "couplings",
+        "solver.coupled",
+        "put_coupling_forces",
+        "(behind - ahead)",
+        "(behind - 0.99 * ahead)",
+        "chain",
+        copy=True,
+    ),
     "momentum_reaction": edit(
         "momentum",
         "tank.modal",
