@@ -169,9 +169,9 @@ def _of_couplings(run: Run) -> tuple[CouplingResult, ...]:
     return tuple(
         CouplingResult(
             max_compression_N=float(law.largest[j]),
-            max_tension_N=float(-law.least[j]),
+            max_tension_N=float(0.0 - law.least[j]),
             max_compression_m=float(law.nearest[j]),
-            max_tension_m=float(-law.farthest[j]),
+            max_tension_m=float(0.0 - law.farthest[j]),
             max_compression_s=float(law.largest_time[j]),
             max_tension_s=float(law.least_time[j]),
             energy_taken_J=float(law.taken[j]),

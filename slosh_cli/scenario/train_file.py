@@ -29,6 +29,7 @@ _MOST: Final = 1000
 _EVERY: Final = "all"
 _SHARED: Final = ("track", "contact", "solver", "output")
 """Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
+_OF_THE_TRAIN: Final = "must be said of the whole train, not of a vehicle"
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
     document = read(path, own, lambda _: TrainFile)
     file = TrainFile.of(document, str(path))
     total = sum(entry.count for entry in file.vehicles)
-    _check_places(document, wishes, total)
+    _check_wishes(document, file, wishes)
     if total > _MOST:
         document.add(Finding(("vehicles",), f"must be at most {_MOST} in all", f"{total}", "leave some out"))
     found: list[Scenario] = []
@@ -179,15 +180,40 @@ def _sorted(overrides: Iterable[str]) -> tuple[list[str], list[_Wish]]:
     return own, wishes
 
 
-def _check_places(document: Document, wishes: Sequence[_Wish], total: int) -> None:
+def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) -> None:
+    """Refuse overrides of vehicles that are not there, and values of a vehicle that the train's would displace."""
+    total = sum(entry.count for entry in file.vehicles)
     for wish in wishes:
         document.overrides.append(wish.written)
         if wish.place is not None and not 1 <= wish.place <= total:
             rule = f"must name a vehicle from the front, 1 to {total}"
             fix = f"write `vehicles.1.{wish.key}`, or `all.{wish.key}` for every vehicle"
             document.problems.append(Problem(None, "", rule, f"`{wish.place}`", fix, wish.written))
+        elif _is_displaced(file, wish.key, wish.place or 1):
+            fix = f"write `--set {_for_all(file, wish.key)}=...`"
+            document.problems.append(Problem(None, "", _OF_THE_TRAIN, f"`{wish.value}`", fix, wish.written))
+    place = 1
+    for number, entry in enumerate(file.vehicles):
+        for key, value in entry.set.items():
+            if _is_displaced(file, key, place):
+                fix = f"write `{key}` for the train, outside of `vehicles:`"
+                document.add(Finding(("vehicles", number, "set", key), _OF_THE_TRAIN, plain(value), fix))
+        place += entry.count
     if any(problem.override for problem in document.problems):
         raise ScenarioError("", document.sorted_problems())
+
+
+def _is_displaced(file: TrainFile, key: str, place: int) -> bool:
+    """Whether the train, or its first vehicle, says for all what `key` would say of the vehicle at a `place`."""
+    part = key.partition(".")[0]
+    shared = part in _SHARED and (place > 1 or getattr(file, part) is not None)
+    return shared or key in {f"braking.{name}" for name in TrainBraking.model_fields}
+
+
+def _for_all(file: TrainFile, key: str) -> str:
+    """How an override says `key` for the whole train: by its first vehicle where its own file says nothing of it."""
+    part = key.partition(".")[0]
+    return f"{_EVERY}.{key}" if part in _SHARED and getattr(file, part) is None else key
 
 
 def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:

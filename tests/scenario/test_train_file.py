@@ -119,3 +119,27 @@ def test_screw_and_automatic_are_sound_couplings() -> None:
     for coupling in COUPLINGS.values():
         given = {name: vars(value) if hasattr(value, "loading") else value for name, value in vars(coupling).items()}
         assert Coupling.model_validate({name: value for name, value in given.items() if value is not None}) == coupling
+
+
+@pytest.mark.parametrize(
+    ("override", "fix"),
+    [
+        ("vehicles.2.braking.onset=3 s", "--set braking.onset="),
+        ("all.braking.stop_speed=1 m/s", "--set braking.stop_speed="),
+        ("vehicles.2.track.gradient=0.01", "--set all.track.gradient="),
+        ("vehicles.2.solver.tolerance=1e-5", "--set all.solver.tolerance="),
+    ],
+)
+def test_a_value_of_a_vehicle_that_the_train_would_displace_is_refused(train, override: str, fix: str) -> None:
+    with pytest.raises(ScenarioError, match="must be said of the whole train") as refused:
+        train(override)
+    assert fix in str(refused.value)
+
+
+def test_so_is_one_in_the_file_and_the_first_vehicle_speaks_for_all(train) -> None:
+    with pytest.raises(ScenarioError, match=r"small.yaml:4: vehicles.0.set.braking.onset: must be said of the whole"):
+        train(replaced=("tank.fill: 0.9", "braking.onset: 2 s"))
+    with pytest.raises(ScenarioError, match=r"small.yaml:5: vehicles.1.set.track.gradient: must be said of the whole"):
+        train(replaced=("braking.application: P", "track.gradient: 0.01"))
+    for override in ("all.track.gradient=0.01", "vehicles.1.track.gradient=0.01"):
+        assert {one.track.gradient_points for one in train(override).vehicles} == {((0.0, 0.01),)}
