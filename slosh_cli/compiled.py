@@ -121,8 +121,9 @@ def is_cached(name: str, chosen: str = "") -> bool:
 
 
 def solver_is_cached(model: str) -> bool:
-    """The same of the time loop for a load of this model of the liquid."""
-    return is_cached("advance.advance", {"modal": "ModalLiquid", "shallow-water": "CellLiquid"}.get(model, ""))
+    """The same of the time loop for a load of this model of the liquid; `mixed` of a train that has several."""
+    chosen = {"modal": "ModalLiquid", "shallow-water": "CellLiquid", "mixed": "MixedLiquid"}.get(model, "")
+    return is_cached("advance.advance", chosen)
 
 
 def not_kept() -> str:

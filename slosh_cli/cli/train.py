@@ -90,7 +90,8 @@ def _simulate(train: "TrainScenario") -> "TrainResult":
     from slosh_cli.results.simulate import simulate_train
 
     models = {one.tank.liquid.model for one in train.vehicles}
-    announce_solver(models if len(models) == 1 else models - {"rigid"})
+    several = len(models) > 1
+    announce_solver(["mixed"] if several and "shallow-water" in models else models - {"rigid"} if several else models)
     cancel = threading.Event()
     with RunProgress(train.name) as progress:
         try:
