@@ -3,11 +3,15 @@
 import os
 import traceback
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain
+from slosh_cli.cli.output import complain, say_json, warn
+
+if TYPE_CHECKING:
+    from slosh_cli.results.result import Result
+    from slosh_cli.results.train_result import TrainResult
 
 
 def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
@@ -18,6 +22,24 @@ def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
     for failure in keeping.failures:
         complain(f"error: {failure}")
     return ExitCode.BAD_INPUT if keeping.failures and code is ExitCode.DONE else code
+
+
+def answered(result: "Result | TrainResult", files: Mapping[str, Any], keeping: Keeping, *, as_json: bool) -> ExitCode:
+    """Tell the end of a run: with `as_json` the whole answer, else where its `files` lie; returns the exit code."""
+    from slosh_cli.cli.summary import show_files
+    from slosh_cli.results.result import Status
+
+    stopped = result.status is Status.STOPPED
+    if as_json:
+        answer = result.summary()
+        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
+        for warning in result.warnings:
+            warn(warning)
+        if not stopped:
+            complain(f"{result.status}: {result.reason} {result.status.remedy}")
+    else:
+        show_files(files)
+    return told(keeping, ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
 
 
 def files_text(files: Mapping[str, Any]) -> str:

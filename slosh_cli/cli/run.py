@@ -7,7 +7,7 @@ import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile
-from slosh_cli.cli.output import complain, note, say_json, warn
+from slosh_cli.cli.output import note
 
 if TYPE_CHECKING:
     from slosh_cli.results.result import Result
@@ -34,29 +34,19 @@ def run_command(
         return run_train(scenario_file, output, overrides, as_json=as_json, figures=not no_figures)
     from slosh_cli.application.keeping import Keeping, folder_of_run
     from slosh_cli.application.stop import RUN_FILES, keep_run
-    from slosh_cli.cli.keeping import told
+    from slosh_cli.cli.keeping import answered
     from slosh_cli.cli.reading import load_given
-    from slosh_cli.cli.summary import show_files, show_run
-    from slosh_cli.results.result import Status
+    from slosh_cli.cli.summary import show_run
     from slosh_cli.scenario import load_scenario
 
     scenario = load_given(load_scenario, scenario_file, overrides)
     folder = folder_of_run(scenario, output, overrides, RUN_FILES, note)
     result = _simulate(scenario)
-    stopped, keeping = result.status is Status.STOPPED, Keeping()
+    keeping = Keeping()
     if not as_json:
         show_run(result)
     files = keep_run(result, folder, keeping, figures=not no_figures)
-    if as_json:
-        answer = result.summary()
-        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
-        for warning in result.warnings:
-            warn(warning)
-        if not stopped:
-            complain(f"{result.status}: {result.reason} {result.status.remedy}")
-    else:
-        show_files(files)
-    return told(keeping, ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
+    return answered(result, files, keeping, as_json=as_json)
 
 
 def _simulate(scenario: "Scenario") -> "Result":

@@ -1,4 +1,4 @@
-"""What `slosh run`, `slosh check` and `slosh plot` do with a train."""
+"""What `slosh run` and `slosh check` do with a train."""
 
 import threading
 from collections.abc import Sequence
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import complain, note, say, say_json, show, warn
+from slosh_cli.cli.output import note, say, say_json, show, warn
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -21,67 +21,41 @@ def run_train(
     """Simulate the stop of a train, tell of it, keep its files."""
     from slosh_cli.application.keeping import Keeping, folder_of_run
     from slosh_cli.application.train import TRAIN_FILES, keep_train
-    from slosh_cli.cli.keeping import told
-    from slosh_cli.cli.summary import show_files
-    from slosh_cli.results.result import Status
+    from slosh_cli.cli.keeping import answered
     from slosh_cli.scenario.train_file import load_train
 
     train = load_train(file, overrides or ())
     folder = folder_of_run(train, output, overrides, TRAIN_FILES, note)
     result, keeping = _simulate(train), Keeping()
-    stopped = result.status is Status.STOPPED
     if not as_json:
         _show(result)
     files = keep_train(result, folder, keeping, figures=figures)
-    if as_json:
-        answer = result.summary()
-        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
-        for warning in result.warnings:
-            warn(warning)
-        if not stopped:
-            complain(f"{result.status}: {result.reason} {result.status.remedy}")
-    else:
-        show_files(files)
-    return told(keeping, ExitCode.DONE if stopped else ExitCode.NO_ANSWER)
+    return answered(result, files, keeping, as_json=as_json)
 
 
 def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -> ExitCode:
     """Say that a train is sound, and what of."""
+    from slosh_cli.application.stop import outlook
+    from slosh_cli.results.train_result import gathered
     from slosh_cli.scenario.train_file import load_train
 
     train = load_train(file, overrides or ())
     vehicles, last = train.vehicles, train.vehicles[-1]
+    warnings = gathered([outlook(vehicle)[0] for vehicle in vehicles])
     length = sum(one.wagon.length_in_train for one in vehicles)
     if as_json:
         found = {"name": train.name, "valid": True, "describes": "a train", "file": str(file), "length_m": length}
         each = [{"name": one.name, "onset_s": one.braking.onset} for one in vehicles]
-        say_json(found | {"vehicles": each, "warnings": []})
+        say_json(found | {"vehicles": each, "warnings": list(warnings)})
         return ExitCode.DONE
     say(f"{file}: {train.name} is a sound train of {len(vehicles)} vehicles, {length:.1f} m long")
     kinds = dict.fromkeys(one.name for one in vehicles)
     say("Vehicles: " + ", ".join(f"{sum(one.name == kind for one in vehicles)} x {kind}" for kind in kinds))
     onsets = f"{vehicles[0].braking.onset:.2f} s at the front and {last.braking.onset:.2f} s at the end"
     say(f"The brakes set in after {onsets}")
+    for warning in warnings:
+        warn(warning)
     return ExitCode.DONE
-
-
-def plot_train(history_file: Path, folder: Path) -> ExitCode:
-    """Draw the figures of a train from its history file."""
-    from slosh_cli.application.keeping import Keeping
-    from slosh_cli.application.train import TRAIN_FILES
-    from slosh_cli.cli.keeping import told
-    from slosh_cli.report import TRAIN_FIGURES
-    from slosh_cli.report.train_figures import draw_train
-    from slosh_cli.results.files import try_targets
-    from slosh_cli.results.hdf5 import read_train
-
-    history, keeping = read_train(history_file), Keeping()
-    try_targets(folder, TRAIN_FILES)
-    for name in TRAIN_FIGURES:
-        with keeping.part(f"the figure {folder / name}"):
-            for drawn in draw_train(history, folder, names=(name,)):
-                say(str(drawn))
-    return told(keeping)
 
 
 def _simulate(train: "TrainScenario") -> "TrainResult":

@@ -29,7 +29,6 @@ _MOST: Final = 1000
 _EVERY: Final = "all"
 _SHARED: Final = ("track", "contact", "solver", "output")
 """Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
-_OF_THE_TRAIN: Final = "must be said of the whole train, not of a vehicle"
 
 
 @dataclass(frozen=True)
@@ -190,14 +189,17 @@ def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) 
             fix = f"write `vehicles.1.{wish.key}`, or `all.{wish.key}` for every vehicle"
             document.problems.append(Problem(None, "", rule, f"`{wish.place}`", fix, wish.written))
         elif _is_displaced(file, wish.key, wish.place or 1):
-            fix = f"write `--set {_for_all(file, wish.key)}=...`"
-            document.problems.append(Problem(None, "", _OF_THE_TRAIN, f"`{wish.value}`", fix, wish.written))
+            place_of = wish.written.removesuffix(wish.key)
+            fix = f"write `{place_of}braking.blocks=...`" if wish.key == "braking" else ""
+            fix = fix or f"write `--set {_for_all(file, wish.key)}=...`"
+            document.problems.append(Problem(None, "", _rule(wish.key), f"`{wish.value}`", fix, wish.written))
     place = 1
     for number, entry in enumerate(file.vehicles):
         for key, value in entry.set.items():
             if _is_displaced(file, key, place):
                 fix = f"write `{key}` for the train, outside of `vehicles:`"
-                document.add(Finding(("vehicles", number, "set", key), _OF_THE_TRAIN, plain(value), fix))
+                fix = "write such as `braking.blocks: ...`" if key == "braking" else fix
+                document.add(Finding(("vehicles", number, "set", key), _rule(key), plain(value), fix))
         place += entry.count
     if any(problem.override for problem in document.problems):
         raise ScenarioError("", document.sorted_problems())
@@ -207,7 +209,14 @@ def _is_displaced(file: TrainFile, key: str, place: int) -> bool:
     """Whether the train, or its first vehicle, says for all what `key` would say of the vehicle at a `place`."""
     part = key.partition(".")[0]
     shared = part in _SHARED and (place > 1 or getattr(file, part) is not None)
-    return shared or key in {f"braking.{name}" for name in TrainBraking.model_fields}
+    return shared or key in {"braking", *(f"braking.{name}" for name in TrainBraking.model_fields)}
+
+
+def _rule(key: str) -> str:
+    """Why a vehicle must not have the value of a displaced `key`."""
+    if key == "braking":
+        return "must be given key by key: initial speed, onset and stop speed are the train's"
+    return "must be said of the whole train, not of a vehicle"
 
 
 def _for_all(file: TrainFile, key: str) -> str:

@@ -136,6 +136,12 @@ def test_a_value_of_a_vehicle_that_the_train_would_displace_is_refused(train, ov
     assert fix in str(refused.value)
 
 
+def test_a_brake_as_a_whole_is_refused_since_it_would_lose_its_speed_and_onset(train) -> None:
+    with pytest.raises(ScenarioError, match="key by key") as refused:
+        train("vehicles.2.braking={torque: 3 kN m, initial_speed: 80 km/h, onset: 9 s}")
+    assert "write `--set vehicles.2.braking.blocks=...`" in str(refused.value)
+
+
 def test_so_is_one_in_the_file_and_the_first_vehicle_speaks_for_all(train) -> None:
     with pytest.raises(ScenarioError, match=r"small.yaml:4: vehicles.0.set.braking.onset: must be said of the whole"):
         train(replaced=("tank.fill: 0.9", "braking.onset: 2 s"))
