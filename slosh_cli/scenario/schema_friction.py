@@ -6,22 +6,21 @@ speed in km/h and a force in kN.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from pydantic import Field
 
 from slosh_cli.friction import cast_iron, composite
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Count, Leaf, Number, Quantity, Range
-from slosh_cli.scenario.points import Points
+from slosh_cli.scenario.leaves import Count, Number, Quantity, Range
+from slosh_cli.scenario.points import NumberOrPoints, Points
 from slosh_cli.scenario.short import Short
 
 KM_H: Final = 3.6
 """A metre per second in km/h."""
 _COEFFICIENT: Final = Number(Range(0.005, 1.5), "0.15")
-_FRICTION_CURVE: Final = Points(
+_BY_SPEED: Final = Points(
     Quantity("speed", Range(0.0, 200.0), "100 km/h"), _COEFFICIENT, "[[0 km/h, 0.32], [100 km/h, 0.25]]"
 )
 
@@ -50,7 +49,7 @@ class FrictionTable(Part):
     """Friction by speed; of one point, the same at every speed."""
 
     law: Literal["table"] = Field(default="table", description="Friction law: points of speed and coefficient.")
-    points: Annotated[tuple[tuple[float, float], ...], _FRICTION_CURVE] = Field(
+    points: Annotated[tuple[tuple[float, float], ...], _BY_SPEED] = Field(
         description="Points [speed, coefficient]; straight lines between them, constant beyond."
     )
 
@@ -63,34 +62,15 @@ class FrictionTable(Part):
         return self.points[0 if speed < self.points[0][0] * KM_H else -1][1], 0.0
 
 
-@dataclass(frozen=True)
-class _NumberOrTable(Leaf):
-    """A coefficient of friction, or a table of it by speed."""
-
-    def sample(self) -> str:
-        return _COEFFICIENT.sample()
-
-    def parse(self, value: object) -> tuple[tuple[float, float], ...]:
-        listed = isinstance(value, list | tuple)
-        return _FRICTION_CURVE.parse(value) if listed else ((0.0, _COEFFICIENT.parse(value)),)
-
-    def parse_python(self, value: object) -> tuple[tuple[float, float], ...]:
-        listed = isinstance(value, list | tuple)
-        return _FRICTION_CURVE.parse_python(value) if listed else ((0.0, _COEFFICIENT.parse_python(value)),)
-
-    def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [_COEFFICIENT.json_schema(), _FRICTION_CURVE.json_schema()]}
-
-
-def _by_speed(points: tuple[tuple[float, float], ...]) -> FrictionTable:
-    return FrictionTable.model_construct(points=points)
+def _by_speed(value: float | tuple[tuple[float, float], ...]) -> FrictionTable:
+    return FrictionTable.model_construct(points=((0.0, value),) if isinstance(value, float) else value)
 
 
 _FrictionLaw: TypeAlias = Annotated[
     Annotated[_CastIron | _Composite | FrictionTable, Field(discriminator="law")],
     Short(
         {"cast-iron": _CastIron.model_construct(), "composite": _Composite.model_construct()},
-        _NumberOrTable(),
+        NumberOrPoints(_COEFFICIENT, _BY_SPEED),
         _by_speed,
         "a coefficient of friction from 0.005 to 1.5, a list of points [speed, coefficient]",
         "0.15",

@@ -6,7 +6,6 @@ import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
@@ -18,6 +17,7 @@ from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.csv_table import Table, read_table
 from slosh_cli.scenario.leaves import Count, Leaf, Number, Quantity, Range
+from slosh_cli.scenario.points import NumberOrPoints, Points
 from slosh_cli.scenario.rules import Finding, Values
 from slosh_cli.scenario.units import plain, shown
 from slosh_cli.scenario.words import Choice
@@ -33,61 +33,18 @@ _CONTENT: Final = f"{','.join(_HEAD)} "
 _MOST_POINTS: Final = 20_000
 _HIGHEST: Final = 0.1
 _STEEPEST: Final = 0.1
-_POSITION: Final = Quantity("length", Range(-1e6, 1e6), "300 m")
 _GRADIENT: Final = Number(Range(-_STEEPEST, _STEEPEST), "0.010")
-
-
-@dataclass(frozen=True)
-class GradientProfile(Leaf):
-    """A gradient, or a table of [position, gradient] in the order of the positions."""
-
-    def sample(self) -> str:
-        return _GRADIENT.sample()
-
-    def written(self, value: Any, *, as_text: bool) -> Any:
-        if isinstance(value, float):
-            return value
-        return [[_POSITION.written(place, as_text=as_text), rise] for place, rise in value]
-
-    def parse(self, value: object) -> Any:
-        return self._read(value, bare=False)
-
-    def parse_python(self, value: object) -> Any:
-        return self._read(value, bare=True)
-
-    def _read(self, value: object, *, bare: bool) -> Any:
-        if not isinstance(value, list | tuple):
-            if isinstance(value, dict):
-                rule = "must be a number or a list of points [position, gradient]"
-                raise ValueRefused(rule, plain(value), "write `[[0 m, 0], [300 m, 0.01]]`")
-            return _GRADIENT.parse(value)
-        if not 1 <= len(value) <= _MOST_POINTS:
-            rule = f"must have from 1 to {_MOST_POINTS} points [position, gradient]"
-            raise ValueRefused(rule, f"{len(value)}", "write points such as `[[0 m, 0], [300 m, 0.01]]`")
-        points = [_point(number, entry, bare) for number, entry in enumerate(value, 1)]
-        for number, ((before, _), (place, _)) in enumerate(pairwise(points), 2):
-            if place - before < 1.0:
-                rule = f"must have positions that rise by 1 m or more, but point {number} does not"
-                given = f"`{shown(before)} m`, then `{shown(place)} m`"
-                raise ValueRefused(rule, given, "list the points along the travel, and leave out what is too close")
-        return tuple(points)
-
-    def json_schema(self) -> dict[str, Any]:
-        point = {"type": "array", "prefixItems": [_POSITION.json_schema(), _GRADIENT.json_schema()], "items": False}
-        table = {"type": "array", "items": point | {"minItems": 2}, "minItems": 1, "maxItems": _MOST_POINTS}
-        return {"anyOf": [*_GRADIENT.json_schema()["anyOf"], table]}
-
-
-def _point(number: int, entry: object, bare: bool) -> tuple[float, float]:
-    """Position (m) and gradient of the `number`-th point, whose position may be `bare` of a unit."""
-    if not isinstance(entry, list | tuple) or len(entry) != 2:
-        rule = f"must be a list of points [position, gradient], but point {number} is not"
-        raise ValueRefused(rule, plain(entry), "write the point as in `[300 m, 0.01]`")
-    try:
-        place = (_POSITION.parse_python if bare else _POSITION.parse)(entry[0])
-        return place, _GRADIENT.parse(entry[1])
-    except ValueRefused as refused:
-        raise ValueRefused(f"{refused.rule}, in point {number}", refused.given, refused.fix) from None
+GRADIENT: Final = NumberOrPoints(
+    _GRADIENT,
+    Points(
+        Quantity("length", Range(-1e6, 1e6), "300 m"),
+        _GRADIENT,
+        "[[0 m, 0], [300 m, 0.01]]",
+        most=_MOST_POINTS,
+        apart=1.0,
+    ),
+)
+"""A gradient, or points [position, gradient]."""
 
 
 @dataclass(frozen=True)

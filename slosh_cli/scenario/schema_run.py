@@ -8,7 +8,7 @@ from pydantic import Field
 from slosh_cli.scenario.base import Part
 from slosh_cli.scenario.leaves import Number, Quantity, Range
 from slosh_cli.scenario.rules import Finding, Values
-from slosh_cli.scenario.schema_line import GradientProfile, Unevenness
+from slosh_cli.scenario.schema_line import GRADIENT, Unevenness
 from slosh_cli.scenario.short import Short
 from slosh_cli.scenario.units import at_most, shown
 
@@ -65,7 +65,7 @@ class Track(Part):
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
     domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")
-    gradient: Annotated[float | tuple[tuple[float, float], ...], GradientProfile()] = Field(
+    gradient: Annotated[float | tuple[tuple[float, float], ...], GRADIENT] = Field(
         default=0.0,
         description="Rise per length of track, uphill in the direction of travel positive; or points [position, "
         "gradient], linear between them and constant beyond.",
