@@ -26,6 +26,7 @@ from numba.extending import NativeValue, lower_builtin, register_model, typeof_i
 from numba.np import numpy_support as np_support
 
 from slosh_cli.arrays import ArrayKind
+from slosh_cli.kernel_store import known_as
 
 _WORD = 8
 _FLOAT, _BITS = struct.Struct("d"), struct.Struct("q")
@@ -185,7 +186,7 @@ class _BlockType(types.Type):
         own = [f"-{cls.__name__}" for hint, cls in blocks if cls is not hint]
         self.chosen = "".join([*own, *(getattr(kind, "chosen", "") for kind in kinds.values())])
         parts = [str(kind) for kind in kinds.values() if isinstance(kind, (_BlockType, _RowType))]
-        super().__init__(name=f"{cls.__module__}.{cls.__qualname__}" + (f"({', '.join(parts)})" if parts else ""))
+        super().__init__(name=known_as(cls) + (f"({', '.join(parts)})" if parts else ""))
 
 
 class _RowType(types.Type):

@@ -9,6 +9,7 @@ carries the checksum of its content and the signature it is for. Where no such f
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 import pickle
 import re
@@ -19,6 +20,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,6 +51,23 @@ def digest(files: Iterable[Path], root: Path, *others: object) -> str:
         found.update(f"{file.relative_to(root).as_posix()} {len(content)}\n".encode())
         found.update(content)
     return found.hexdigest()[:16]
+
+
+@cache
+def known_as(cls: type) -> str:
+    """The name of a class, by which kernels that were made for it are known.
+
+    The build tells the program's own classes. Of another class its source goes into the name, so that no kernel is used
+    again that was made for other fields or other code.
+    """
+    name = f"{cls.__module__}.{cls.__qualname__}"
+    if cls.__module__.partition(".")[0] == __name__.partition(".")[0]:
+        return name
+    try:
+        source = Path(inspect.getfile(cls)).read_bytes()
+    except (OSError, TypeError):  # typed in, or made up: nobody knows whether it is the same again
+        source = secrets.token_bytes()
+    return f"{name}@{hashlib.sha256(source).hexdigest()[:16]}"
 
 
 class KernelStore:

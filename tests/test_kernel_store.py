@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from itertools import cycle
 from pathlib import Path
 from tempfile import mkdtemp
@@ -18,7 +19,8 @@ import pytest
 
 import slosh_cli
 from slosh_cli.blocks import Block
-from slosh_cli.kernel_store import KernelStore, digest, source_files
+from slosh_cli.kernel_store import KernelStore, digest, known_as, source_files
+from slosh_cli.wagon.brake import Brake
 
 PACKAGE = Path(slosh_cli.__file__).parent
 BUILD = "0123456789abcdef"
@@ -356,3 +358,31 @@ def test_the_digest_changes_with_every_byte_of_every_source(tmp_path: Path) -> N
         assert digest(files, root, "1.0") != first
         file.write_bytes(content)
     assert digest(files, root, "1.0") == first
+
+
+FOREIGN = """
+from slosh_cli.blocks import Block
+
+class Mine(Block):
+    {fields}
+"""
+
+
+def test_kernels_made_for_a_foreign_class_go_with_its_source(tmp_path: Path) -> None:
+    """A block of a script or a test lies outside the build: with other fields its kernels must not be used again."""
+    names = []
+    for place, fields in (("a", "one: float"), ("b", "one: float"), ("c", "other: int")):
+        file = tmp_path / place / "foreign.py"
+        file.parent.mkdir()
+        file.write_text(FOREIGN.format(fields=fields))
+        spec = spec_from_file_location("foreign", file)
+        assert spec is not None
+        assert spec.loader is not None
+        module = module_from_spec(spec)
+        sys.modules["foreign"] = module
+        spec.loader.exec_module(module)
+        names.append(module.Mine.blank().kind.name)
+    del sys.modules["foreign"]
+    assert names[0] == names[1] != names[2]
+    assert "@" not in known_as(Brake)
+    assert known_as(type("Made", (Brake,), {"__module__": "made_up"})).startswith("made_up.Made@")

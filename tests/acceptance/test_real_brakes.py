@@ -84,3 +84,16 @@ def test_a_brake_has_its_figure_where_there_is_something_to_see(stop):
     labels = [axes.get_ylabel().replace("\n", " ") for axes in drawn.axes]
     assert labels == ["part of the full force / %", "friction coefficient", "brake torque per wheel / kN m"]
     assert len(plot(stop("paper_80_solid", "braking.application=P"))["brake"].axes) == 2
+
+
+def test_a_changeover_is_less_force_in_the_run_too(stop):
+    """The light wagon with a changeover is that with 0.58 of the force, the full one is as without."""
+    changeover = "braking.load_changeover={gross_mass: 48 t, empty_share: 0.58}"
+    weak = "braking.blocks={count: 2, force: 14.5 kN, friction: cast-iron}"
+    for fill, brakes in (("0.1", (CAST_IRON, weak)), ("0.5", (CAST_IRON, CAST_IRON))):
+        light, other = (
+            stop("paper_80_solid", brake, f"tank.fill={fill}", "braking.application=P", *more)
+            for brake, more in zip(brakes, ([changeover], []), strict=True)
+        )
+        assert light.braking_distance_m == pytest.approx(other.braking_distance_m, rel=1e-5)  # other steps
+        assert light.brake_torque_max_N_m == pytest.approx(other.brake_torque_max_N_m, rel=1e-4)

@@ -119,21 +119,10 @@ def test_release_within_the_shortest_step_by_one_stage_but_not_by_the_other(held
     assert vehicle.points[START].v[WHEEL_SPIN] > 0.0
 
 
-class Ramp(Block):
-    """A torque that is `held` (N m) at `begun` (s) and grows by `rate` (N m/s)."""
+class Given(Block):
+    """What brakes of a given torque have in common."""
 
-    held: float
-    rate: float
-    begun: float
     breaks: int
-
-    @kernel
-    def torque(self, wheel, time, spin):
-        return self.held + self.rate * (time - self.begun), 0.0
-
-    @kernel
-    def next_break(self):
-        return np.inf
 
     @kernel
     def pass_break(self, time, v, first_spin):
@@ -150,7 +139,23 @@ class Ramp(Block):
 
     @kernel
     def is_on(self):
-        return True
+        return self.breaks > 0
+
+
+class Ramp(Given):
+    """A torque that is `held` (N m) at `begun` (s) and grows by `rate` (N m/s)."""
+
+    held: float
+    rate: float
+    begun: float
+
+    @kernel
+    def torque(self, wheel, time, spin):
+        return self.held + self.rate * (time - self.begun), 0.0
+
+    @kernel
+    def next_break(self):
+        return np.inf
 
 
 @kernel
@@ -199,13 +204,12 @@ def test_brake_without_torque_lets_go(held_wheel):
         assert values[0] < -SWITCH_TOLERANCE
 
 
-class Switch(Block):
+class Switch(Given):
     """A torque of `first` (N m) that becomes `second` at `change` (s)."""
 
     first: float
     second: float
     change: float
-    breaks: int
 
     @kernel
     def torque(self, wheel, time, spin):
@@ -214,23 +218,6 @@ class Switch(Block):
     @kernel
     def next_break(self):
         return self.change if self.breaks < 2 else np.inf
-
-    @kernel
-    def pass_break(self, time, v, first_spin):
-        self.breaks += 1
-        return True
-
-    @kernel
-    def application(self, time):
-        return 1.0
-
-    @kernel
-    def share(self, wheel, time):
-        return 1.0
-
-    @kernel
-    def is_on(self):
-        return self.breaks > 0
 
 
 @pytest.mark.parametrize(("share", "held"), [(1.1, True), (0.9, False), (0.0, False)])

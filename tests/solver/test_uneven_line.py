@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from slosh_cli.results.channels import wheel
 from slosh_cli.results.simulate import simulate
 
 FAST = "braking.initial_speed=100 km/h"
@@ -72,3 +73,17 @@ def test_keys_that_say_nothing_change_no_digit(stop, shipped):
         assert other.braking_distance_m == plain.braking_distance_m
         assert other.max_wheel_load_N == plain.max_wheel_load_N
         assert other.steps == plain.steps
+
+
+def test_each_wheel_meets_a_dip_at_its_own_place(stop, shipped):
+    """`x_i = s + X_i`: wheel 1 leads, wheel 4 comes 13.8 m behind it."""
+    dip = "track.unevenness={dips: [{position: 60 m, length: 2 m, depth: 4 mm}]}"
+    found = stop("paper_80_solid", dip, "braking.onset=8 s", "braking.initial_speed=60 km/h", "output.interval=1 ms")
+    rolling = found.time < 7.9
+    for i, ahead in enumerate((6.9, 5.1, -5.1, -6.9), start=1):
+        load = found.channels[wheel(i, "normal_force")][rolling]
+        at = found.channels["position"][np.argmax(np.abs(load - found.static_wheel_load_N[i - 1]))] + ahead
+        assert 60.0 < at < 63.0, i
+    level, place = found.channels["rail_level"], found.channels["position"] + 6.9
+    inside = (place > 60.0) & (place < 62.0)
+    np.testing.assert_allclose(level, np.where(inside, -2e-3 * (1 - np.cos(np.pi * (place - 60.0))), 0.0), atol=2e-6)

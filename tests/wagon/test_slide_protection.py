@@ -83,3 +83,13 @@ def test_histories_hold_the_share(stops):
     assert share.min() < 0.5
     assert share.max() == 1.0
     assert wheel(4, "slide_protection_share") not in stops[0].channels
+
+
+def test_friction_sees_the_force_that_slide_protection_leaves(stops):
+    """`T = n mu(v, p a F) p a F R`: less force, more friction."""
+    for i in (1, 4):
+        told = {name: stops[1].channels[wheel(i, name)] for name in ("slide_protection_share", "speed", "held_torque")}
+        force = 40.0 * stops[1].channels["brake_application"] * told["slide_protection_share"]
+        speed = 3.6 * np.maximum(told["speed"], 0.0)
+        mu = 0.6 * (1.62 * force + 100) / (8.1 * force + 100) * (speed + 100) / (5 * speed + 100)
+        np.testing.assert_allclose(told["held_torque"], 2e3 * mu * force * 0.46, rtol=1e-9, atol=1e-6)
