@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _PATIENCE: Final = 2.0
 """Seconds before a bar appears: a shorter run needs none."""
 
-_COMPILE_SECONDS: Final = 20
+_COMPILE_SECONDS: Final = 40
 """What compiling the time loop for a kind of liquid takes on an ordinary machine, in s."""
 
 _NOTE_SECONDS: Final = 60.0

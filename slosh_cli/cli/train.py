@@ -108,10 +108,12 @@ def _rows(result: "TrainResult") -> "Table":
     from rich import box
     from rich.table import Table
 
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    heads = ("vehicle", "scenario", "onset / s", "way / m", "rise / m", "unloading / %", "locked / s")
-    for column in (*heads, "compression / kN", "tension / kN"):
-        table.add_column(column, justify="left" if column == "scenario" else "right")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("")
+    table.add_column("vehicle", overflow="ellipsis", no_wrap=True)
+    heads = ("onset\n/ s", "way\n/ m", "rise\n/ m", "unloading\n/ %", "locked\n/ s")
+    for column in (*heads, "compression\nbehind / kN", "tension\nbehind / kN"):
+        table.add_column(column, justify="right", no_wrap=True)
     behind: list[Any] = [*result.couplings, None]
     for number, (one, coupling) in enumerate(zip(result.vehicles, behind, strict=True), 1):
         forces = ["", ""]

@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from slosh_cli.arrays import Matrix
 from slosh_cli.report import FORMATS, TRAIN_FIGURES
@@ -98,6 +99,7 @@ def _train_speed(train: TrainHistory) -> Figure:
 def _train_slosh(train: TrainHistory) -> Figure:
     """Rise of the surface at the front wall of every tank: time against the place in the train."""
     figure, axes = _axes(train, "Surface at the front walls", "time / s", "vehicle, from the front")
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     every = max(len(train.time) // _MOST_COLUMNS, 1)
     rise: Matrix = np.array([one.channels["surface_front"][::every] for one in train.vehicles])
     most = max(float(np.abs(rise).max()), 1e-9)
