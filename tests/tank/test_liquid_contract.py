@@ -12,6 +12,7 @@ from slosh_cli.method import BASE, END, START, hermite_weights, parabola_weights
 from slosh_cli.tank.cells import CellLiquid, cell_liquid
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.liquid import Ride, Slosh
+from slosh_cli.tank.mixed import MixedLiquid, of_one_class
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 
 KINDS = (Slosh, *Slosh.__subclasses__())
@@ -42,7 +43,15 @@ def still_cells() -> CellLiquid:
     return cell_liquid(shallow, columns, by_force=2e-5, by_moment=1e-6, along_by_force=2e-5)
 
 
-LIQUIDS = {"frozen": Slosh.blank, "modes": modes_in_motion, "cells": still_cells}
+def mixed(flows: int) -> MixedLiquid:
+    """A tank of a train that mixes both kinds: the modes in motion (0) or the still cells (1)."""
+    return of_one_class([modes_in_motion(), still_cells()], modal_liquid([], 9.81, 0.5))[flows]
+
+
+LIQUIDS = {
+    "frozen": Slosh.blank, "modes": modes_in_motion, "cells": still_cells,
+    "modes of a mixed train": lambda: mixed(0), "cells of a mixed train": lambda: mixed(1),
+}  # fmt: skip
 
 
 @kernel
@@ -85,7 +94,7 @@ def moving_ride() -> Ride:
 
 def test_the_contract_is_whole():
     assert set(CONTRACT) == NAMES
-    assert len(KINDS) == 3
+    assert len(KINDS) == 4
 
 
 @pytest.mark.parametrize("kind", KINDS)
