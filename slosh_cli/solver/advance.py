@@ -174,7 +174,8 @@ def _event_step(train, step):
 
 @inner_kernel
 def _switch_at_start(train, step):
-    """Switch the wheels whose event is no further than the shortest step from the start; True where there are any."""
+    """Switch the wheels whose event is no further than the shortest step from the start, or before it, as that of one
+    that was let go and then turned the other way; True where there are any."""
     vehicles, switched = train.vehicles, False
     for k in range(len(vehicles)):
         before, after = vehicles[k].account.values_before, vehicles[k].account.values
@@ -217,12 +218,12 @@ def _meet_event(train, step, shorter):
     """Try the `shorter` step (s), at whose end an event lies that falls inside the `step` in hand."""
     train.event_tries += 1
     train.rejected += 1
-    if shorter < 2.0 * SHORTEST_STEP and _switch_at_start(train, step):
+    if _switch_at_start(train, step):
         train.trying = 0.0
         _note_event(train)
         return RUNNING
     # a straight line may creep towards a bent event from beyond it: halving does not
-    train.trying = max(shorter if train.event_tries < 3 else min(shorter, 0.5 * step), 2.0 * SHORTEST_STEP)
+    train.trying = max(shorter if train.event_tries < 3 else min(shorter, 0.5 * step), train.control.event_time)
     return RUNNING
 
 
@@ -235,7 +236,7 @@ def _judge(train, rows, step, error):
     if not (0.0 <= error <= 1.0):
         return _reject(train, step, error)
     shorter = _event_step(train, step)
-    if shorter < step and step > 2.0 * SHORTEST_STEP:
+    if shorter < step and step > train.control.event_time:
         return _meet_event(train, step, shorter)
     if not _finite(train):
         return NOT_FINITE

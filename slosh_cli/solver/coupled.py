@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from slosh_cli.compiled import inner_kernel
-from slosh_cli.method import BASE, MIDDLE, START
+from slosh_cli.method import BASE, END, GAMMA, MIDDLE, START
 
 
 @inner_kernel
@@ -43,13 +43,15 @@ def close_couplings(train, stage, step, allowed):
     own compliance, and each coupling sees its neighbours: the system is tridiagonal.
     """
     law, vehicles, largest = train.couplings, train.vehicles, 0.0
+    apart = 2.0 * step * (1.0 if stage < END else 1.0 / GAMMA - 1.0)
     count, ahead, rate_ahead = law.gap.size, 0.0, 0.0
     for k in range(count + 1 if count > 0 else 0):
         base, acceleration = vehicles[k].points[BASE], _coupled_place(vehicles[k], vehicles[k].points[stage].a)
         place = _coupled_place(vehicles[k], base.q) + step * step * acceleration
         rate = _coupled_place(vehicles[k], base.v) + step * acceleration
         if k > 0:
-            force, by_place, by_rate = law.follow(k - 1, stage, place - ahead - law.origin[k - 1], rate - rate_ahead)
+            compression = place - ahead - law.origin[k - 1]
+            force, by_place, by_rate = law.follow(k - 1, stage, apart, compression, rate - rate_ahead)
             law.gap[k - 1] = force - law.force[stage, k - 1]
             law.stiffness[k - 1] = law.half * step * (step * by_place + by_rate)
             largest = max(largest, abs(law.gap[k - 1]))

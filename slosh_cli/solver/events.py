@@ -1,4 +1,4 @@
-"""Events that end a step: lock, release, creepage floor, pitch limit of a vehicle, a coupling that turns back, stop.
+"""Events that end a step: lock, release, creepage floor, pitch limit of a vehicle, stop.
 
 Each event has a value that is positive until it happens. A value is *armed* once it has been clearly positive. Lift-off
 and landing are no events: the force of a contact rises from zero with the power 3/2, so that accelerations do not jump.
@@ -45,7 +45,6 @@ def read_values(train, stage, time):
     vehicles = train.vehicles
     for k in range(len(vehicles)):
         _vehicle_values(vehicles[k], stage, time, vehicles[k].account.values)
-    train.couplings.read_turning(stage)
     train.stop_values[1] = _speed_at(train, stage) - train.control.stop_speed
 
 
@@ -57,7 +56,6 @@ def keep_values(train):
         values, before = vehicles[k].account.values, vehicles[k].account.values_before
         for i in range(values.size):
             before[i] = values[i]
-    train.couplings.keep_turning()
     train.stop_values[0] = train.stop_values[1]
 
 
@@ -76,9 +74,6 @@ def shorter_step(train, step):
     A wheel's event that was not armed and went the wrong way at once asks for a tenth.
     """
     vehicles, best = train.vehicles, min(step, _crossing(train.stop_values[0], train.stop_values[1], step))
-    before, after = train.couplings.turning_before, train.couplings.turning
-    for j in range(after.size):
-        best = min(best, _crossing(before[j], after[j], step))
     for k in range(len(vehicles)):
         before, after = vehicles[k].account.values_before, vehicles[k].account.values
         for i in range(before.size):

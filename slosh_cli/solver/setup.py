@@ -14,6 +14,7 @@ from slosh_cli.scenario import Scenario, Track, Wagon
 from slosh_cli.scenario.rail_reach import computed_lengths
 from slosh_cli.scenario.schema_train import Coupling
 from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.solver.events import SHORTEST_STEP
 from slosh_cli.solver.initial import initial_point
 from slosh_cli.solver.train import Control, Train, new_train
 from slosh_cli.solver.vehicle import Point, Scales, Vehicle, new_vehicle
@@ -43,6 +44,8 @@ _LONGEST_STEP = 0.25
 """No step is longer than this, s: wheel loads are looked at often enough not to miss their extremes."""
 _STANDING = 1e-4
 """Vehicles of a train that are slower than this, m/s, count as standing."""
+_EVENT_TIME = 1e-4
+"""Events of a train are met to this, s. Some hundred wheels lock and let go as its vehicles come to a stand."""
 _FIRST_STEP = 1e-3
 """First step to try, s."""
 _SLOWING = 2.2
@@ -103,7 +106,7 @@ def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> t
     law = couplings(coupling, np.diff(places), HALF) if coupling and len(vehicles) > 1 else None
     for vehicle in vehicles if law else ():
         vehicle.line.standing = _STANDING
-    train = new_train(vehicles, _control(first), _FIRST_STEP, law)
+    train = new_train(vehicles, _control(first, _EVENT_TIME if law else 2.0 * SHORTEST_STEP), _FIRST_STEP, law)
     loads = [vehicle.points[0].normal.copy() for vehicle in vehicles]
     return tuple(ReadyStop(train, load, most_missing, place) for place, load in enumerate(loads))
 
@@ -250,12 +253,13 @@ def _scales(scenario: Scenario, wagon: WagonModel, liquid: Slosh, start: Point) 
     )
 
 
-def _control(scenario: Scenario) -> Control:
+def _control(scenario: Scenario, event_time: float) -> Control:
     return Control(
         local_tolerance=_LOCAL_TOLERANCE_FACTOR * scenario.solver.tolerance**1.5,
         stop_speed=scenario.braking.stop_speed,
         time_limit=scenario.solver.time_limit,
         longest_step=_LONGEST_STEP,
         most_slowing=_SLOWING * float(np.sqrt(scenario.solver.tolerance)) * scenario.braking.initial_speed,
+        event_time=event_time,
         interval=scenario.output.interval,
     )

@@ -14,7 +14,8 @@ class Control(Block):
     """What steers the integrator. SI units.
 
     `local_tolerance` bounds the error of one step relative to the vehicles' `Scales`. No step is longer than
-    `longest_step` (s), nor takes more than `most_slowing` (m/s) from the speed.
+    `longest_step` (s), nor takes more than `most_slowing` (m/s) from the speed. An event inside a step of no more than
+    `event_time` (s) is taken at its end.
     """
 
     local_tolerance: float
@@ -22,6 +23,7 @@ class Control(Block):
     time_limit: float
     longest_step: float
     most_slowing: float
+    event_time: float
     interval: float
 
 

@@ -8,17 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from slosh_cli.arrays import Integers, Matrix, Vector
+from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.method import DIAGONAL, END, MIDDLE, OUTER, START, step_extremes
 from slosh_cli.scenario.schema_train import Branch, Coupling
-
-_ON_A_BRANCH = 1e-9
-"""A spring is on a branch when it is this close to it, as a part of how far the branches are apart."""
-_RATE_SHARE = 1e-2
-"""Of a rate of compression (m/s) in an event's value: springs that turn slower than 1e-4 m/s need no step's end, as the
-part of the compression that they miss is below 1e-7 m."""
 
 COUPLING_COLUMNS = 2
 """Numbers at the end of a row of the history: force and compression of the coupling behind the vehicle."""
@@ -41,12 +35,12 @@ class Couplings(Block):
     push. None make a single vehicle.
 
     `upper_places` (m) and `upper_forces` (N) are the points of the upper branch, (points,) each, those of the lower
-    one likewise; `transition` N/m, `damping` N s/m. `origin` (couplings,) is how far apart the coupling points of
-    neighbours are in their coordinates when they touch, m. `compression` m, `rate` m/s, `spring` N (without damping)
-    and `force` N are at the stages of a step, (3, couplings). Of the run: `taken` J, the work that they took, with what
-    it was before the step in hand; `least`, `largest` N with their instants (s), `nearest`, `farthest` m; (couplings,).
-    `turning`, `turning_before` are the values of the events at which springs turn back. `half` says what part of a
-    coupling's force acts on the vehicles as they are modelled. The rest is work space.
+    one likewise; `transition` N/m, `damping` N s/m. `half` says what part of a coupling's force acts on the vehicles as
+    they are modelled; `rubs` is 1 where the branches differ. `origin` (couplings,) is how far apart the coupling points
+    of neighbours are in their coordinates when they touch, m. `compression` m, `rate` m/s, `spring` N (without damping)
+    and `force` N are at the stages of a step, (3, couplings), `turn` N where a spring turned back on the way there. Of
+    the run: `taken` J, the work that they took, with what it was before the step in hand; `least`, `largest` N with
+    their instants (s), `nearest`, `farthest` m; (couplings,). The rest is work space.
     """
 
     upper_places: Vector
@@ -56,11 +50,13 @@ class Couplings(Block):
     transition: float
     damping: float
     half: float
+    rubs: int
     origin: Vector
     compression: Matrix
     rate: Matrix
     spring: Matrix
     force: Matrix
+    turn: Matrix
     taken: Vector
     taken_before: Vector
     least: Vector
@@ -69,55 +65,53 @@ class Couplings(Block):
     largest_time: Vector
     nearest: Vector
     farthest: Vector
-    directions: Integers
-    turning: Vector
-    turning_before: Vector
     gap: Vector
     stiffness: Vector
     ratio: Vector
 
     @inner_kernel
-    def follow(self, coupling, stage, compression, rate):
+    def follow(self, coupling, stage, apart, compression, rate):
         """Take a coupling's spring to a `compression` (m) at a stage, where it has a `rate` (m/s): the force (N), and
-        its derivatives by both. The way there is the one from the stage before."""
+        its derivatives by both. The way there is the one from the stage before, `apart` s ago.
+
+        Where the rate changes its sign on that way the spring first goes to where it turns back: at the end of a rate
+        that changes evenly.
+        """
         before = max(stage - 1, 0)
-        high, by_high = _branch(self.upper_places, self.upper_forces, compression)
-        low, by_low = _branch(self.lower_places, self.lower_forces, compression)
-        moved = compression - self.compression[before, coupling]
-        spring, slope = self.spring[before, coupling] + self.transition * moved, self.transition
-        if spring >= high:
-            spring, slope = high, by_high
-        elif spring <= low:
-            spring, slope = low, by_low
+        place, spring, rate_before = (
+            self.compression[before, coupling],
+            self.spring[before, coupling],
+            self.rate[before, coupling],
+        )
+        slope, by_rate = self.transition, 0.0
+        if rate_before * rate < 0.0:
+            change = rate_before - rate
+            turn = compression + 0.5 * apart * rate * rate / change
+            by_rate = 0.5 * apart * rate * (rate_before + change) / (change * change)
+            spring, slope = self._pulled(spring, turn - place, turn)
+            place = turn
+        turned = spring
+        spring, last = self._pulled(spring, compression - place, compression)
+        if last == self.transition:
+            by_rate *= slope - self.transition
+        else:
+            slope, by_rate = last, 0.0
         if stage > 0:
             self.compression[stage, coupling], self.spring[stage, coupling] = compression, spring
-            self.rate[stage, coupling] = rate
-        return spring + self.damping * rate, slope, self.damping
+            self.rate[stage, coupling], self.turn[stage, coupling] = rate, turned
+        return spring + self.damping * rate, slope, self.damping + by_rate
 
     @inner_kernel
-    def keep_turning(self):
-        """Note at the start of a step which springs are on a branch that they leave when they turn back, 1 for the
-        upper and -1 for the lower one, and the values of these events there."""
-        for j in range(self.directions.size):
-            place, spring = self.compression[0, j], self.spring[0, j]
-            high, _ = _branch(self.upper_places, self.upper_forces, place)
-            low, _ = _branch(self.lower_places, self.lower_forces, place)
-            close = _ON_A_BRANCH * (high - low)
-            self.directions[j] = 0
-            if close > 0.0 and spring >= high - close:
-                self.directions[j] = 1
-            elif close > 0.0 and spring <= low + close:
-                self.directions[j] = -1
-        self.read_turning(START)
-        for j in range(self.directions.size):
-            self.turning_before[j] = self.turning[j]
-
-    @inner_kernel
-    def read_turning(self, stage):
-        """Values, at a stage, of the events that springs turn back: their rate as long as they go on, else one."""
-        for j in range(self.directions.size):
-            way = self.directions[j]
-            self.turning[j] = _RATE_SHARE * way * self.rate[stage, j] if way != 0 else 1.0
+    def _pulled(self, spring, moved, compression):
+        """Force (N) of a spring `moved` (m) one way to a `compression` (m), and the stiffness there (N/m)."""
+        high, by_high = _branch(self.upper_places, self.upper_forces, compression)
+        low, by_low = _branch(self.lower_places, self.lower_forces, compression)
+        spring += self.transition * moved
+        if spring >= high:
+            return high, by_high
+        if spring <= low:
+            return low, by_low
+        return spring, self.transition
 
     @inner_kernel
     def settle(self, step):
@@ -132,9 +126,15 @@ class Couplings(Block):
 
     @inner_kernel
     def accept(self, time):
-        """Note the extremes of the step that ends at `time` (s), and let its end be the next start."""
+        """Note the extremes of the step that ends at `time` (s), and let its end be the next start.
+
+        A spring with friction goes from stage to stage one way, but for where it turns back.
+        """
         for j in range(self.taken.size):
             low, high = step_extremes(self.force[START, j], self.force[MIDDLE, j], self.force[END, j])
+            if self.rubs == 1:
+                turns, ends = (self.turn[MIDDLE, j], self.turn[END, j]), (self.force[MIDDLE, j], self.force[END, j])
+                low, high = min(turns[0], turns[1], ends[0], ends[1]), max(turns[0], turns[1], ends[0], ends[1])
             if low < self.least[j]:
                 self.least[j], self.least_time[j] = low, time
             if high > self.largest[j]:
@@ -167,7 +167,7 @@ def couplings(coupling: Coupling | None, origin: Vector, half: float) -> Couplin
     modelled as `half` of themselves. None have no law."""
     count = len(origin)
     upper, lower, transition, damping = _law(coupling)
-    stages = {name: np.zeros((3, count)) for name in ("compression", "rate", "spring", "force")}
+    stages = {name: np.zeros((3, count)) for name in ("compression", "rate", "spring", "force", "turn")}
     return Couplings.blank(
         count,
         upper_places=upper[0],
@@ -177,6 +177,7 @@ def couplings(coupling: Coupling | None, origin: Vector, half: float) -> Couplin
         transition=transition,
         damping=damping,
         half=half,
+        rubs=int(not np.array_equal(upper, lower)),
         origin=np.array(origin),
         **stages,
     )

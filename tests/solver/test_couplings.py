@@ -168,7 +168,7 @@ def test_a_coupling_without_stiffness_leaves_two_stops(shipped):
 @kernel
 def drive(law, places, forces):
     for i in range(places.size):
-        forces[i], _, _ = law.follow(0, 1, places[i], 0.0)
+        forces[i], _, _ = law.follow(0, 1, 1e-3, places[i], 0.0)
         law.compression[0, 0], law.spring[0, 0] = law.compression[1, 0], law.spring[1, 0]
 
 
@@ -198,6 +198,52 @@ def test_a_friction_spring_keeps_to_its_definition(name):
         for first, last in pairwise(passed):
             if forces[last] >= forces[first] - 1e-9:
                 assert work[last] >= work[first] - 1e-6
+
+
+@kernel
+def follow(law, apart, place, rate):
+    return law.follow(0, 1, apart, place, rate)
+
+
+def on_the_way(name, start, rate):
+    """A coupling's law that stands loaded at `start` (m) with a `rate` (m/s)."""
+    law = couplings(COUPLINGS[name], np.zeros(1), 0.5)
+    drive(law, along(0.0, start), np.zeros(along(0.0, start).size))
+    law.rate[0, 0] = rate
+    return law
+
+
+TURNS = [("screw", 0.05, 0.1), ("screw", -0.03, -0.1), ("automatic", 0.06, 0.1), ("screw", 0.05, 0.02)]
+
+
+@pytest.mark.parametrize(("name", "start", "rate"), TURNS)
+@pytest.mark.parametrize("part", [0.2, 0.5, 0.9])
+def test_a_spring_that_turns_back_within_a_step_goes_there_first(name, start, rate, part):
+    """At a constant deceleration, against the way there and back in small pieces."""
+    apart, end = 0.04, rate * (1.0 - 1.0 / part)
+    turn, back = start + 0.5 * rate * part * apart, 0.5 * end * (1.0 - part) * apart
+    pieces = along(0.0, start, turn, turn + back)
+    forces = np.zeros(pieces.size)
+    drive(couplings(COUPLINGS[name], np.zeros(1), 0.5), pieces, forces)
+    found, _, _ = follow(on_the_way(name, start, rate), apart, turn + back, end)
+    assert found == pytest.approx(forces[-1], rel=1e-9)
+
+
+@pytest.mark.parametrize(("name", "start", "rate"), TURNS)
+@pytest.mark.parametrize("back", [-0.01, -0.4])
+def test_derivatives_of_a_force_are_those_of_its_differences(name, start, rate, back):
+    """Without a turn, with one that leaves the branch, and with one as far as the other branch."""
+    for end in (0.5 * rate, back * rate, 20.0 * back * rate):
+        place = start + 0.02 * (rate + end)
+        law = on_the_way(name, start, rate)
+        _, by_place, by_rate = follow(law, 0.04, place, end)
+        change = [
+            follow(law, 0.04, place + 1e-8 * i, end + 1e-6 * j)[0]
+            - follow(law, 0.04, place - 1e-8 * i, end - 1e-6 * j)[0]
+            for i, j in ((1, 0), (0, 1))
+        ]
+        assert by_place == pytest.approx(change[0] / 2e-8, rel=1e-4, abs=1.0)
+        assert by_rate == pytest.approx(change[1] / 2e-6, rel=1e-4, abs=1.0)
 
 
 @pytest.mark.parametrize("name", ["screw", "automatic"])
