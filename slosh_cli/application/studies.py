@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping, default_folder, free_folder
 from slosh_cli.errors import SloshError, UsageError
-from slosh_cli.report.study_pages import Page, figure_files, figure_name, pages
+from slosh_cli.report.study_pages import Page, figure_files, named, pages
 from slosh_cli.results.result import Status
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.train_file import TrainScenario
 from slosh_cli.study.build import grid, paper_wagon
 from slosh_cli.study.claims import applies, verdicts
 from slosh_cli.study.journal import JOURNAL, Journal
@@ -194,16 +195,16 @@ class StudyResult:
         """What draws braking distance against what varies; several figures where one would be crowded."""
 
         def draw(page: Page) -> Figure:
-            from slosh_cli.report.study_figures import braking_distance
+            from slosh_cli.report.study_figures import study_figure
 
-            return braking_distance(page)
+            return study_figure(page)
 
         found = _pages(self.study, map(dict, self.rows), lambda *_: None)
-        return {figure_name(number, len(found)): partial(draw, page) for number, page in enumerate(found, start=1)}
+        return {name: partial(draw, page) for name, page in named(found).items()}
 
 
 def sweep(
-    scenario: Scenario | str | Path | None = None,
+    scenario: Scenario | TrainScenario | str | Path | None = None,
     vary: Mapping[str, Any] | None = None,
     *,
     threads: int | None = None,

@@ -14,7 +14,7 @@ from slosh_cli.errors import UsageError
 _ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """Variables that keep linear algebra to the thread that calls it: the stops share the cores among them already."""
 
-_FILE: Final = "Scenario or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
+_FILE: Final = "Scenario, train or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
 _ScenarioOrStudy = Annotated[Path | None, typer.Argument(metavar="SCENARIO", help=_FILE, show_default=False)]
 _SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary
 alone, the scenario's own."""
@@ -23,7 +23,8 @@ _TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. De
 ends in); with --vary alone, the scenario's own."""
 _Torques = Annotated[str | None, option("--torque", "LIST", _TORQUES)]
 _VARY: Final = """Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m',
---vary contact.adhesion=dry,wet. May be repeated."""
+--vary contact.adhesion=dry,wet. Of a train: all.KEY, vehicles.N.KEY or a key of its own, --vary
+all.braking.application=P,G, --vary coupling=screw,automatic. May be repeated."""
 _Vary = Annotated[list[str] | None, option("--vary", "KEY=LIST", _VARY)]
 _LIQUIDS: Final = "Models of the load. Default: the scenario's own (the paper's: modal) and rigid."
 _Liquids = Annotated[str | None, option("--liquid", "LIST", _LIQUIDS)]

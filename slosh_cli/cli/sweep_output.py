@@ -10,7 +10,7 @@ from slosh_cli.cli.output import complain, note, say, show
 from slosh_cli.report.study_pages import name_of, unit_of, value_text
 from slosh_cli.results.result import Status
 from slosh_cli.study.axis import Axis
-from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study, TrainStudy
 from slosh_cli.study.table import TABLE
 
 if TYPE_CHECKING:
@@ -47,7 +47,9 @@ def show_study(study: Study, rows: Iterable[_Row]) -> None:
     rows = list(rows) if _lines(study) <= _MOST_LINES else []
     if rows:
         show(_table(study, rows))
-        say(_legend(rows))
+        legend = _legend(study, rows)
+        if legend:
+            say(legend)
         for line in _best_lines(study, rows):
             say(line)
 
@@ -108,7 +110,8 @@ def _verdict_lines(rows: Iterable[_Row]) -> list[str]:
 
 
 def _where(study: Study, row: _Row) -> str:
-    return ", ".join(value_text(axis, row) for axis in study.axes if len(axis.values) > 1) or str(row["liquid"])
+    told = ", ".join(value_text(axis, row) for axis in study.axes if len(axis.values) > 1)
+    return told or str(row.get("liquid", study.name))
 
 
 def _lines(study: Study) -> int:
@@ -126,6 +129,8 @@ def _table(study: Study, rows: Sequence[_Row]) -> "Table":
     from rich import box
     from rich.table import Table
 
+    if isinstance(study, TrainStudy):
+        return _train_table(study, rows)
     axes = _told(study)
     models = list(dict.fromkeys(str(row["liquid"]) for row in rows))
     liquids = [model for model in models if model != SOLID]
@@ -147,6 +152,36 @@ def _table(study: Study, rows: Sequence[_Row]) -> "Table":
     return table
 
 
+def _train_table(study: Study, rows: Sequence[_Row]) -> "Table":
+    """One line per stop of a train."""
+    from rich import box
+    from rich.table import Table
+
+    axes = _told(study)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    table.title, table.title_justify, table.title_style = f"{study.name}: stops of a train", "left", "bold"
+    heads = [(_SHORT.get(axis.key) or _short(axis, axes), unit_of(axis)) for axis in axes]
+    answers = [("distance", "m"), ("compression", "kN"), ("tension", "kN"), ("unloading", "%"), ("locked", "s")]
+    for name, unit in [*heads, *answers]:
+        table.add_column(f"{name}\n{unit}", justify="right", no_wrap=True)
+    for row in rows:
+        cells = [value_text(axis, row).removesuffix(unit_of(axis)).strip() for axis in axes]
+        if row.get("max_compression_N") is None:
+            table.add_row(*cells, str(row["status"]))
+            continue
+        forces = [f"{row[f'max_{way}_N'] / 1e3:.1f}" for way in ("compression", "tension")]
+        wheels = [f"{100 * row['max_wheel_unloading']:.1f}", f"{row['longest_lock_s']:.2f}"]
+        table.add_row(*cells, _distance(row, ()), *forces, *wheels)
+    return table
+
+
+def _short(axis: Axis, axes: Sequence[Axis]) -> str:
+    """The last word of an axis's key, or all of it where another one ends alike."""
+    word = axis.key.rpartition(".")[2]
+    alike = [other for other in axes if other.key.rpartition(".")[2] == word]
+    return word if len(alike) == 1 else axis.key
+
+
 def _distance(row: _Row | None, best: Sequence[_Row]) -> str:
     if row is None:
         return "-"
@@ -163,10 +198,11 @@ def _ratio(row: _Row | None) -> str:
     return "-" if ratio is None else f"{ratio:.4f}"
 
 
-def _legend(rows: Sequence[_Row]) -> str:
-    words = "* shortest of its curve"
+def _legend(study: Study, rows: Sequence[_Row]) -> str:
+    words = [] if isinstance(study, TrainStudy) else ["* shortest of its curve"]
     outside = any(row.get("braking_distance_m") is not None and not row.get("liquid_in_range") for row in rows)
-    return words + ("   o outside the range of the liquid's theory (see warnings in the table)" if outside else "")
+    words += ["o outside the range of the liquid's theory (see warnings in the table)"] if outside else []
+    return "   ".join(words)
 
 
 def _curve_of(study: Study) -> list[Axis]:

@@ -63,9 +63,7 @@ def _simulate(train: "TrainScenario") -> "TrainResult":
     from slosh_cli.cli.progress import RunProgress, announce_solver
     from slosh_cli.results.simulate import simulate_train
 
-    models = {one.tank.liquid.model for one in train.vehicles}
-    several = len(models) > 1
-    announce_solver(["mixed"] if several and "shallow-water" in models else models - {"rigid"} if several else models)
+    announce_solver(train.liquids)
     cancel = threading.Event()
     with RunProgress(train.name) as progress:
         try:

@@ -24,12 +24,13 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from slosh_cli.report import FORMATS, figures
 from slosh_cli.report.label_places import spread
 from slosh_cli.report.saving import INK, MUTED, save, styled
-from slosh_cli.report.study_pages import Mark, Page, StopsPanel, figure_files, figure_name
+from slosh_cli.report.study_pages import Mark, Page, StopsPanel, figure_files, named
 from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Status
 from slosh_cli.study.plan import SOLID
 
 _LINEAR: Final = "modal"
+_LIQUIDS: Final = (_LINEAR, "shallow-water")
 _WIDTH: Final = 10.4
 """Width of a figure of two panels in inches; a wider one has no more pixels across."""
 
@@ -45,7 +46,7 @@ _WITHOUT_ANSWER: Final = {Status.PITCH_LIMIT: "x", Status.TIME_LIMIT: "1", Statu
 
 
 def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FORMATS) -> list[Path]:
-    """Draw one figure per page into `folder`, `braking_distance` and a number where there are several.
+    """Draw one figure per page into `folder`, by its name.
 
     Returns the files. Each appears whole or not at all; those of an earlier study that had more are removed then.
     Raises FileError when one cannot be written, once the others are.
@@ -53,10 +54,9 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
     files = []
     refusal: FileError | None = None
     with styled():
-        for number, page in enumerate(pages, start=1):
-            name = figure_name(number, len(pages))
+        for name, page in named(pages).items():
             try:
-                files += save(braking_distance(page), folder, name, formats)
+                files += save(study_figure(page), folder, name, formats)
             except FileError as error:
                 refusal = refusal or error
             if len(pages) > 1:
@@ -69,8 +69,8 @@ def draw_study(pages: Sequence[Page], folder: Path, formats: Sequence[str] = FOR
     return files
 
 
-def braking_distance(page: Page) -> Figure:
-    """Braking distance against what varies, one panel beside the other, one curve per model of the load."""
+def study_figure(page: Page) -> Figure:
+    """An answer against what varies, one panel beside the other, one curve per model of the load or kind of force."""
     columns = min(len(page.panels), 3 if len(page.panels) != 4 else 2)
     lines = math.ceil(len(page.panels) / columns)
     looks = _looks(page)
@@ -81,7 +81,7 @@ def braking_distance(page: Page) -> Figure:
     height = 4.6 * lines + 0.4 + header
     figure = Figure(figsize=(width, height), dpi=figures.RESOLUTION * min(1.0, _WIDTH / width))
     FigureCanvasAgg(figure)  # measures all its words with one canvas
-    figure.text(0.014, 1.0 - 0.14 / height, page.title, fontsize=17, fontweight="bold", color=INK, va="top")
+    figure.text(0.014, 1.0 - 0.14 / height, page.shown.title, fontsize=17, fontweight="bold", color=INK, va="top")
     words = "\n".join(textwrap.wrap(page.conditions, int(width * 11)))
     figure.text(0.014, 1.0 - 0.5 / height, words, fontsize=12.5, color=MUTED, va="top", parse_math=False)
     figure.set_layout_engine("constrained", rect=(0.008, 0.006, 0.984, 1.0 - header / height))
@@ -91,7 +91,7 @@ def braking_distance(page: Page) -> Figure:
     for axes in panels[len(page.panels) :]:
         axes.set_axis_off()
     for axes in grid[:, 0]:
-        axes.set_ylabel("braking distance / m")
+        axes.set_ylabel(page.shown.label)
     figure.legend(
         handles=handles, loc="upper left", ncols=beside, columnspacing=1.5, handletextpad=0.6,
         bbox_to_anchor=(0.006, 1.0 - 0.82 / height), borderaxespad=0.0,
@@ -99,7 +99,7 @@ def braking_distance(page: Page) -> Figure:
     figure.draw_without_rendering()  # only now is it known where everything lies
     figure.set_layout_engine("none")
     for axes, panel in zip(panels, page.panels, strict=False):
-        answered = [(mark.x, mark.distance) for marks in panel.curves.values() for mark in marks]
+        answered = [(mark.x, mark.value) for marks in panel.curves.values() for mark in marks]
         spread(axes, labels[axes], [place for place in answered if place[1] is not None])
     return figure
 
@@ -143,9 +143,7 @@ def _draw_curve(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None
     color = look["color"]
     for within, style, width in ((True, look["linestyle"], 1.8), (False, OUTSIDE, 1.5)):
         axes.plot(*_way(marks, within=within), color=color, linestyle=style, linewidth=width, zorder=2)
-        places = [
-            (mark.x, mark.distance) for mark in marks if mark.distance is not None and mark.liquid_in_range == within
-        ]
+        places = [(mark.x, mark.value) for mark in marks if mark.value is not None and mark.liquid_in_range == within]
         axes.plot(
             [x for x, _ in places], [distance for _, distance in places], marker=look["marker"], color=color,
             markerfacecolor=color if within else "white", markersize=look["markersize"], markeredgewidth=1.5,
@@ -158,20 +156,20 @@ def _way(marks: Sequence[Mark], *, within: bool) -> tuple[list[float], list[floa
     x: list[float] = []
     y: list[float] = []
     for first, second in pairwise(marks):
-        if first.distance is None or second.distance is None:
+        if first.value is None or second.value is None:
             continue
         if (first.liquid_in_range and second.liquid_in_range) == within:
             if not x or x[-1] != first.x:
                 x += [math.nan, first.x]
-                y += [math.nan, first.distance]
+                y += [math.nan, first.value]
             x.append(second.x)
-            y.append(second.distance)
+            y.append(second.value)
     return x, y
 
 
 def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None:
     for mark in marks:
-        if mark.distance is None:
+        if mark.value is None:
             axes.plot(
                 [mark.x], [0.965], marker=_WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
                 markeredgewidth=2.2, linestyle="none", transform=axes.get_xaxis_transform(), zorder=4,
@@ -180,7 +178,7 @@ def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) ->
 
 def _scale(axes: Axes, panel: StopsPanel) -> None:
     """A logarithmic axis where distances differ a lot: on it, a ratio has the same length everywhere."""
-    found = [mark.distance for marks in panel.curves.values() for mark in marks if mark.distance]
+    found = [mark.value for marks in panel.curves.values() for mark in marks if mark.value]
     if not found:
         axes.text(0.5, 0.5, "no stop has an answer", transform=axes.transAxes, ha="center", color=MUTED)
         axes.set_yticks([])
@@ -202,7 +200,7 @@ def _mark_best(
     axes: Axes, page: Page, marks: Sequence[Mark], look: dict[str, Any], others: Sequence[Mark]
 ) -> list[Annotation]:
     """Ring and name the lowest point of a curve, below it where no other curve is in the way; returns the name."""
-    answered = [(mark.distance, mark.x) for mark in marks if mark.distance is not None]
+    answered = [(mark.value, mark.x) for mark in marks if mark.value is not None]
     if len(answered) < 2:
         return []
     distance, x = min(answered)
@@ -210,10 +208,11 @@ def _mark_best(
         [x], [distance], marker="o", markersize=15.0, markerfacecolor="none", color=look["color"],
         markeredgewidth=1.6, linestyle="none", zorder=4,
     )  # fmt: skip
-    below = not any(mark.x == x and mark.distance is not None and mark.distance < distance for mark in others)
+    below = not any(mark.x == x and mark.value is not None and mark.value < distance for mark in others)
     place = page.ticks[round(x)] if page.ticks else f"{x:g} {page.unit}".rstrip()
     label = axes.annotate(
-        f"{place}\n{distance:.4g} m", (x, distance), xytext=(0, -13 if below else 13), textcoords="offset points",
+        f"{place}\n{distance:.4g} {page.shown.unit}", (x, distance), xytext=(0, -13 if below else 13),
+        textcoords="offset points",
         ha="center", va="top" if below else "bottom", color=look["color"], fontsize=11.5, linespacing=1.15, zorder=5,
     )  # fmt: skip
     return [label]
@@ -223,11 +222,11 @@ def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
     """What the lines and markers mean, as far as they occur."""
     handles = [_key(_name(model), **look, linewidth=1.8) for model, look in looks.items()]
     marks = [mark for panel in page.panels for marks in panel.curves.values() for mark in marks]
-    if any(mark.distance is not None and not mark.liquid_in_range for mark in marks):
+    if any(mark.value is not None and not mark.liquid_in_range for mark in marks):
         look = {"marker": "o", "markerfacecolor": "white", "markeredgewidth": 1.5, "markersize": 7.0}
         words = "outside linear theory" if set(looks) <= {_LINEAR, SOLID} else "outside its theory"
         handles.append(_key(words, linestyle=OUTSIDE, **look))
-    for status in sorted({mark.status for mark in marks if mark.distance is None}):
+    for status in sorted({mark.status for mark in marks if mark.value is None}):
         look = {"marker": _WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
         handles.append(_key(str(status), linestyle="none", **look))
     ring = {"marker": "o", "markerfacecolor": "none", "markersize": 13.0, "markeredgewidth": 1.6}
@@ -235,7 +234,7 @@ def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
 
 
 def _name(model: str) -> str:
-    return "equivalent solid" if model == SOLID else f"liquid ({model})"
+    return "equivalent solid" if model == SOLID else f"liquid ({model})" if model in _LIQUIDS else model
 
 
 def _key(label: str, **look: Any) -> Line2D:

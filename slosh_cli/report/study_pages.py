@@ -2,13 +2,15 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from slosh_cli.results.result import Status
+from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.schema_run import ADHESIONS
+from slosh_cli.scenario.train_file import TrainScenario
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SPEED, TORQUE, Study
 from slosh_cli.study.table import column_of
@@ -19,23 +21,24 @@ _T = TypeVar("_T")
 _NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
 _UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
 _COLUMNS: Final[Mapping[str, str]] = {SPEED: "v0_km_h", TORQUE: "torque_kN_m", LIQUID: "liquid"}
-_FIGURE: Final = re.compile(r"braking_distance(?:_(?P<number>[0-9]+))?\.(?P<kind>png|svg)")
+_DISTANCE, _FORCES = "braking_distance", "coupler_forces"
+_FIGURE: Final = re.compile(rf"(?P<shown>{_DISTANCE}|{_FORCES})(?:_(?P<number>[0-9]+))?\.(?P<kind>png|svg)")
 _MOST_PANELS: Final = 6
 
 
 @dataclass(frozen=True)
 class Mark:
-    """One stop: its place `x` on the axis, braking distance in m (None without an answer), how it ended."""
+    """One stop: its place `x` on the axis, the answer shown (None where there is none), how it ended."""
 
     x: float
-    distance: float | None
+    value: float | None
     status: Status
     liquid_in_range: bool
 
 
 @dataclass(frozen=True)
 class StopsPanel:
-    """One panel: its title and, by model of the load, its stops in the order of `x`."""
+    """One panel: its title and, by what the curve is of (models of the load), its stops in the order of `x`."""
 
     title: str
     curves: dict[str, list[Mark]] = field(default_factory=dict)
@@ -45,10 +48,11 @@ class StopsPanel:
 class Page:
     """One figure: panels that share the horizontal axis `label`; `ticks` name its places where it has no numbers.
 
-    `best` is what the lowest point of a curve is called, `unit` that of the horizontal axis.
+    `best` is what the lowest point of a curve is called, `unit` that of the horizontal axis; `shown` is what the
+    figure shows.
     """
 
-    title: str
+    shown: "Answered"
     conditions: str
     label: str
     unit: str
@@ -57,15 +61,55 @@ class Page:
     ticks: Sequence[str] = ()
 
 
-def figure_name(number: int, count: int) -> str:
-    """Name of a figure's files: `braking_distance`, and the figure's `number` from 1 where there are several."""
-    return "braking_distance" if count == 1 else f"braking_distance_{number}"
+@dataclass(frozen=True)
+class Answered:
+    """What a figure shows: its `title`, the `name` of its files, the `label` and `unit` of its vertical axis, and the
+    `curves` to which a row of the table adds a value each."""
+
+    title: str
+    name: str
+    label: str
+    unit: str
+    curves: Callable[[Mapping[str, Any]], Iterable[tuple[str, float | None]]]
+
+
+def _kilonewtons(value: float | None) -> float | None:
+    return None if value is None else value / 1e3
+
+
+_OF_A_WAGON: Final = (
+    Answered(
+        "Braking distance", _DISTANCE, "braking distance / m", "m",
+        lambda row: [(str(row["liquid"]), row.get("braking_distance_m"))],
+    ),
+)  # fmt: skip
+_OF_A_TRAIN: Final = (
+    Answered(
+        "Braking distance", _DISTANCE, "braking distance / m", "m",
+        lambda row: [("first vehicle", row.get("braking_distance_m"))],
+    ),
+    Answered(
+        "Coupler forces", _FORCES, "largest coupler force / kN", "kN",
+        lambda row: [(way, _kilonewtons(row.get(f"max_{way}_N"))) for way in ("compression", "tension")],
+    ),
+)  # fmt: skip
+
+
+def named(pages: Sequence["Page"]) -> dict[str, "Page"]:
+    """The pages by the names of their files, with a number from 1 where several show the same."""
+    found = {}
+    for page in pages:
+        alike = [other for other in pages if other.shown is page.shown]
+        number = f"_{next(k for k, other in enumerate(alike, 1) if other is page)}" if len(alike) > 1 else ""
+        found[f"{page.shown.name}{number}"] = page
+    return found
 
 
 def figure_files(folder: Path) -> list[str]:
     """Names of the files of figures of studies in `folder`, by their numbers."""
     found = [(match, file.name) for file in folder.iterdir() if (match := _FIGURE.fullmatch(file.name))]
-    return [name for _, name in sorted(found, key=lambda one: (int(one[0]["number"] or 0), one[0]["kind"]))]
+    order = sorted(found, key=lambda one: (one[0]["shown"], int(one[0]["number"] or 0), one[0]["kind"]))
+    return [name for _, name in order]
 
 
 def name_of(axis: Axis) -> str:
@@ -91,6 +135,12 @@ def value_text(axis: Axis, row: Mapping[str, Any]) -> str:
 
 def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
     """The figures of a study; none where nothing but the load varies."""
+    found = list(rows)
+    each = _OF_A_TRAIN if isinstance(study.base, TrainScenario) else _OF_A_WAGON
+    return [page for shown in each for page in _pages(study, found, shown)]
+
+
+def _pages(study: Study, rows: Iterable[Mapping[str, Any]], shown: Answered) -> list[Page]:
     varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
     if not varied:
         return []
@@ -103,15 +153,16 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
         page = ", ".join(f"{name_of(axis)} {value_text(axis, row)}" for axis in apart)
         title = _panel_title(beside, row)
         panel = found.setdefault(page, {}).setdefault(title, StopsPanel(title))
-        panel.curves.setdefault(str(row["liquid"]), []).append(_mark(along, row, ticks))
+        for curve, value in shown.curves(row):
+            panel.curves.setdefault(curve, []).append(_mark(along, row, value, ticks))
     for panel in (panel for panels in found.values() for panel in panels.values()):
         for marks in panel.curves.values():
             marks.sort(key=lambda mark: mark.x)
     unit = unit_of(along)
-    best = "most effective torque" if along.key == TORQUE else "shortest"
+    best = "most effective torque" if along.key == TORQUE else "shortest" if shown.name == _DISTANCE else "least"
     label = f"{name_of(along)} / {unit}" if unit else name_of(along)
     return [
-        Page("Braking distance", _conditions(study, page), label, unit, best, together, list(ticks))
+        Page(shown, _conditions(study, page), label, unit, best, together, list(ticks))
         for page, panels in found.items()
         for together in _shared_out(list(panels.values()), _MOST_PANELS)
     ]
@@ -135,23 +186,33 @@ def _conditions(study: Study, page: str) -> str:
     fixed = [axis for axis in study.axes if len(axis.values) == 1 and axis.key not in (LIQUID, SPEED)]
     words = [page] if page else []
     words += [f"{name_of(axis)} {axis.values[0]}" for axis in fixed]
-    keys = {axis.key for axis in study.axes}
-    brake, told = study.base.braking, {".".join(key.split(".")[:2]) for key in keys}
-    if told.isdisjoint(f"braking.{key}" for key in ("torque", *brake.rivals("torque"))):
-        words.append("blocks" if brake.blocks else "discs" if brake.discs else _torque(study))
-    tank = study.base.tank
-    words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
-    words += [f"fill {tank.fill:g}"] if told.isdisjoint(f"tank.{key}" for key in ("fill", *tank.rivals("fill"))) else []
-    rail = next((name for name, adhesion in ADHESIONS.items() if adhesion == study.base.contact.adhesion), "")
-    words += [f"{rail} rail"] if rail and not any(key.startswith("contact.adhesion") for key in keys) else []
+    words += _of_wagon(study, study.base) if isinstance(study.base, Scenario) else _of_train(study.base)
     return f"{study.name}: {', '.join(words)}"
 
 
-def _torque(study: Study) -> str:
-    return f"{nominal_torque(study.base) / 1e3:g} kN m per wheel"
+def _of_train(train: TrainScenario) -> list[str]:
+    kinds = dict.fromkeys(vehicle.name for vehicle in train.vehicles)
+    return [f"{sum(vehicle.name == kind for vehicle in train.vehicles)} x {kind}" for kind in kinds]
 
 
-def _mark(along: Axis, row: Mapping[str, Any], ticks: dict[Any, int]) -> Mark:
-    value = row[_column(along)]
-    x = value if isinstance(value, float) else float(ticks.setdefault(value, len(ticks)))
-    return Mark(x, row.get("braking_distance_m"), Status(row["status"]), bool(row.get("liquid_in_range")))
+def _of_wagon(study: Study, base: Scenario) -> list[str]:
+    keys, words = {axis.key for axis in study.axes}, []
+    brake, told = base.braking, {".".join(key.split(".")[:2]) for key in keys}
+    if told.isdisjoint(f"braking.{key}" for key in ("torque", *brake.rivals("torque"))):
+        words.append("blocks" if brake.blocks else "discs" if brake.discs else _torque(base))
+    tank = base.tank
+    words += [f"{tank.shape} tank"] if "tank.shape" not in keys else []
+    words += [f"fill {tank.fill:g}"] if told.isdisjoint(f"tank.{key}" for key in ("fill", *tank.rivals("fill"))) else []
+    rail = next((name for name, adhesion in ADHESIONS.items() if adhesion == base.contact.adhesion), "")
+    words += [f"{rail} rail"] if rail and not any(key.startswith("contact.adhesion") for key in keys) else []
+    return words
+
+
+def _torque(base: Scenario) -> str:
+    return f"{nominal_torque(base) / 1e3:g} kN m per wheel"
+
+
+def _mark(along: Axis, row: Mapping[str, Any], value: float | None, ticks: dict[Any, int]) -> Mark:
+    place = row[_column(along)]
+    x = place if isinstance(place, float) else float(ticks.setdefault(place, len(ticks)))
+    return Mark(x, value, Status(row["status"]), bool(row.get("liquid_in_range")))

@@ -64,6 +64,11 @@ _WORST = 5
 """Exceeded checks that the short form of a record names."""
 
 
+def liquid_is_in_range(run: Any) -> bool:
+    """Whether the liquid of a run with `checks` stayed in the range of its model."""
+    return all(check.within for check in _of_range(run) if check.name not in _NOT_THE_LIQUID)
+
+
 def _of_range(run: "Record") -> tuple[Check, ...]:
     """The checks of the model's range."""
     return tuple(check for check in run.checks if check.kind == "model")
@@ -105,7 +110,7 @@ class Record(Answers):
         needed=True, column="liquid")
     liquid_in_range: bool = derived(
         "", "whether the run stayed in the range of the liquid's model", Place.RANGE, shown=Shown.STUDY,
-        of=lambda run: all(check.within for check in _of_range(run) if check.name not in _NOT_THE_LIQUID))
+        of=liquid_is_in_range)
     fill: float = derived(
         "1", "depth of the still liquid over the tank's inner height", Place.SURFACE, given="tank.fill",
         shown=~Shown.JSON)

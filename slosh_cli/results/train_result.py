@@ -11,7 +11,7 @@ import numpy as np
 
 from slosh_cli.arrays import Vector
 from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
-from slosh_cli.results.result import Status
+from slosh_cli.results.result import Status, liquid_is_in_range
 from slosh_cli.results.validity import Check, warnings_of
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from slosh_cli.scenario.train_file import TrainScenario
 
 _TOLD = Shown.JSON | Shown.SUMMARY | Shown.HISTORY
+_EVERYWHERE = ~Shown(0)
 
 
 class VehicleResult(Answers):
@@ -80,34 +81,49 @@ class TrainResult(Answers):
 
     # fmt: off
     name: str = derived("", "name of the train", Place.NAME, given="name", shown=_TOLD)
-    status: Status = computed("", "how the run ended", Place.STATUS, shown=_TOLD, line=Told(1, "status"))
+    status: Status = computed("", "how the run ended", Place.STATUS, shown=_EVERYWHERE, line=Told(1, "status"))
     braking_distance_m: float | None = computed(
-        "m", "way of the first vehicle from its onset to the train's stop", Place.DISTANCE, shown=_TOLD,
+        "m", "way of the first vehicle from its onset to the train's stop", Place.DISTANCE, shown=_EVERYWHERE,
         line=Told(2, "braking distance of the first vehicle", ".2f", "m"))
     braking_time_s: float | None = computed(
-        "s", "from the first vehicle's onset to the train's stop", Place.DISTANCE, shown=_TOLD,
+        "s", "from the first vehicle's onset to the train's stop", Place.DISTANCE, shown=_EVERYWHERE,
         line=Told(3, "braking time", ".2f", "s"))
     initial_speed_m_s: float = derived(
         "m/s", "V0, the speed at t = 0", Place.CONDITIONS, given="file.braking.initial_speed", column="v0_km_h",
-        per=1 / 3.6, shown=_TOLD)
+        per=1 / 3.6, shown=_EVERYWHERE)
     energy_residual: float = computed(
-        "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy", shown=_TOLD,
-        line=Told(6, "energy ledger, largest residual", ".1e", "of the initial energy"))
-    steps: int = computed("1", "accepted steps of the integrator", shown=_TOLD, line=Told(7, "steps"))
-    rejected_steps: int = computed("1", "rejected steps of the integrator", shown=_TOLD)
+        "1", "what the energy ledger misses, largest over the run, relative to the initial kinetic energy",
+        shown=_EVERYWHERE, line=Told(6, "energy ledger, largest residual", ".1e", "of the initial energy"))
+    steps: int = computed("1", "accepted steps of the integrator", shown=_EVERYWHERE, line=Told(7, "steps"))
+    rejected_steps: int = computed("1", "rejected steps of the integrator", shown=_EVERYWHERE)
     solve_seconds: float = computed(
         "s", "time spent in the solver", shown=_TOLD, line=Told(8, "solver time", ".2f", "s"))
-    warnings: tuple[str, ...] = computed("", "what to know before the numbers are used", Place.WORDS, shown=_TOLD)
+    warnings: tuple[str, ...] = computed("", "what to know before the numbers are used", Place.WORDS, shown=_EVERYWHERE)
     vehicles: tuple[VehicleResult, ...] = computed("", "the vehicles from the front", shown=Shown.JSON)
     couplings: tuple[CouplingResult, ...] = computed("", "the couplings from the front", shown=Shown.JSON)
     max_compression_N: float = derived(
-        "N", "largest compressive force of any coupling", shown=_TOLD,
+        "N", "largest compressive force of any coupling", shown=_EVERYWHERE,
         of=lambda train: max((one.max_compression_N for one in train.couplings), default=0.0),
         line=Told(4, "compression in the train, largest", ".1f", "kN", per=1e3))
     max_tension_N: float = derived(
-        "N", "largest tensile force of any coupling", shown=_TOLD,
+        "N", "largest tensile force of any coupling", shown=_EVERYWHERE,
         of=lambda train: max((one.max_tension_N for one in train.couplings), default=0.0),
         line=Told(5, "tension in the train, largest", ".1f", "kN", per=1e3))
+    compression_at: int = derived(
+        "1", "coupling with the largest compressive force, counted from the front", shown=~Shown.JSON,
+        of=lambda train: _place_of(train.couplings, "max_compression_N"))
+    tension_at: int = derived(
+        "1", "coupling with the largest tensile force, counted from the front", shown=~Shown.JSON,
+        of=lambda train: _place_of(train.couplings, "max_tension_N"))
+    max_wheel_unloading: float = derived(
+        "1", "largest 1 - N/N0 of any wheel of any vehicle", Place.WHEELS, shown=~Shown.JSON,
+        of=lambda train: max(one.max_wheel_unloading for one in train.vehicles))
+    longest_lock_s: float = derived(
+        "s", "how long the wheel was locked that was so longest", Place.WHEELS, shown=~Shown.JSON,
+        of=lambda train: max(max(one.locked_time_s) for one in train.vehicles))
+    liquid_in_range: bool = derived(
+        "", "whether every tank stayed in the range of its liquid's model", Place.RANGE, shown=Shown.STUDY,
+        of=lambda train: all(liquid_is_in_range(one) for one in train.vehicles))
     reason: str = computed("", "why the train did not stop", Place.WORDS, shown=~Shown.JSON)
     # fmt: on
     scenario: "TrainScenario"
@@ -145,6 +161,12 @@ class TrainResult(Answers):
 
         found = {number: one.force for number, one in enumerate(self.couplings, 1)}
         return pd.DataFrame(found, index=pd.Index(self.time, name="time"))
+
+
+def _place_of(couplings: Sequence[CouplingResult], answer: str) -> int:
+    """The coupling with the largest answer, counted from the front; 0 without any."""
+    numbered = enumerate(couplings, 1)
+    return max(numbered, key=lambda one: float(getattr(one[1], answer)), default=(0, None))[0]
 
 
 @dataclass(frozen=True, eq=False)

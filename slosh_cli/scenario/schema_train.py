@@ -1,18 +1,24 @@
-"""The couplings between the vehicles of a train."""
+"""What the file of a train says: its vehicles, the couplings between them, the pipe, the stop."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final
 
 from pydantic import Field
 
+from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.leaves import Quantity, Range
+from slosh_cli.scenario.leaves import Count, Judge, Quantity, Range
+from slosh_cli.scenario.loader import Root
 from slosh_cli.scenario.points import Points
 from slosh_cli.scenario.rules import Finding, Values
-from slosh_cli.scenario.units import at_least, shown
+from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
+from slosh_cli.scenario.short import Short
+from slosh_cli.scenario.units import at_least, plain, shown
+from slosh_cli.scenario.words import Text
 
 _BRANCH: Final = Points(
     Quantity("length", Range(0.0, 10.0), "105 mm"),
@@ -21,6 +27,9 @@ _BRANCH: Final = Points(
     least=2,
     first=0.0,
 )
+SHARED: Final = ("track", "contact", "solver", "output")
+"""Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
+MOST_VEHICLES: Final = 1000
 Branch = tuple[tuple[float, float], ...]
 """Travel (m) and force (N) of the corners of a coupling's branch, the first one at (0, 0)."""
 
@@ -137,3 +146,69 @@ COUPLINGS: Final[dict[str, Coupling]] = {
 }
 """Side buffers and draw gear after EN 15551, both ends of a coupling in series; an automatic coupler with a slack of
 25 mm either way, whose gear of 90 mm then meets its stop."""
+
+
+@dataclass(frozen=True)
+class _Settings(Judge):
+    def parse(self, value: object) -> Any:
+        if isinstance(value, dict):
+            return value
+        raise ValueRefused("must be a mapping of key paths to values", plain(value), "write `set: {tank.fill: 0.9}`")
+
+
+class TrainEntry(Part):
+    """A vehicle of a train, or several alike."""
+
+    scenario: Annotated[str, Text(longest=500)] = Field(
+        description="Path of the scenario from this file, or the name of a packaged one."
+    )
+    count: Annotated[int, Count(1, MOST_VEHICLES)] = Field(default=1, description="How many of them.")
+    set: Annotated[dict[str, Any], _Settings()] = Field(
+        default={}, description="Keys of the scenario with values of their own."
+    )
+
+
+class BrakePipe(Part):
+    """The pipe along the train that tells the brakes to set in."""
+
+    speed: Annotated[float, Quantity("speed", Range(1.0, 1e5), "280 m/s")] = Field(
+        default=280.0, description="Speed of the brake wave from the front, m/s."
+    )
+
+
+class TrainBraking(Part):
+    """The stop of a train; torque, blocks and application come with each vehicle."""
+
+    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
+        description="Speed at the start of the run, m/s."
+    )
+    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
+        description="When the driver brakes, after the start of the run, s."
+    )
+    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
+        default=0.02, description="The run ends when the mean speed of all vehicles falls to this, m/s."
+    )
+
+
+class TrainFile(Root):
+    """What the file of a train says."""
+
+    noun: ClassVar[str] = "train"
+
+    vehicles: tuple[TrainEntry, ...] = Field(min_length=1, description="The vehicles from the front.")
+    coupling: Annotated[Coupling, Short(COUPLINGS)] = Field(
+        default=COUPLINGS["screw"],
+        description="The coupling of any two neighbours: `screw`, `automatic`, or its springs in a mapping.",
+    )
+    brake_pipe: BrakePipe = Field(default=BrakePipe.model_construct(), description="The pipe along the train.")
+    braking: TrainBraking = Field(description="The stop of the train.")
+    track: Track | None = Field(default=None, description="The track under one rail. Default: the first vehicle's.")
+    contact: Contact | None = Field(default=None, description="Wheel and rail. Default: the first vehicle's.")
+    solver: Solver | None = Field(default=None, description="Accuracy, patience. Default: the first vehicle's.")
+    output: Output | None = Field(default=None, description="What is written. Default: the first vehicle's.")
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the train says for all its vehicles, by key path."""
+        braking = {f"braking.{key}": getattr(self.braking, key) for key in ("initial_speed", "stop_speed", "onset")}
+        return braking | {key: getattr(self, key) for key in SHARED if getattr(self, key) is not None}

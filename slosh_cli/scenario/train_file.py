@@ -3,107 +3,32 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from pydantic import Field
-
-from slosh_cli.errors import Problem, ScenarioError, UsageError, ValueRefused
-from slosh_cli.scenario.base import Part
-from slosh_cli.scenario.document import Document
-from slosh_cli.scenario.leaves import Count, Judge, Quantity, Range
+from slosh_cli.errors import Problem, ScenarioError, UsageError
+from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.loader import Root, load_document, read, scenario_to_yaml
 from slosh_cli.scenario.packaged import find_packaged
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema import Scenario, load_scenario
-from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
-from slosh_cli.scenario.schema_train import COUPLINGS, Coupling
-from slosh_cli.scenario.short import Short
+from slosh_cli.scenario.schema_train import MOST_VEHICLES, SHARED, TrainBraking, TrainEntry, TrainFile
 from slosh_cli.scenario.units import plain
-from slosh_cli.scenario.words import Text
 
-_MOST: Final = 1000
 _EVERY: Final = "all"
-_SHARED: Final = ("track", "contact", "solver", "output")
-"""Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
-
-
-@dataclass(frozen=True)
-class _Settings(Judge):
-    def parse(self, value: object) -> Any:
-        if isinstance(value, dict):
-            return value
-        raise ValueRefused("must be a mapping of key paths to values", plain(value), "write `set: {tank.fill: 0.9}`")
-
-
-class TrainEntry(Part):
-    """A vehicle of a train, or several alike."""
-
-    scenario: Annotated[str, Text(longest=500)] = Field(
-        description="Path of the scenario from this file, or the name of a packaged one."
-    )
-    count: Annotated[int, Count(1, _MOST)] = Field(default=1, description="How many of them.")
-    set: Annotated[dict[str, Any], _Settings()] = Field(
-        default={}, description="Keys of the scenario with values of their own."
-    )
-
-
-class BrakePipe(Part):
-    """The pipe along the train that tells the brakes to set in."""
-
-    speed: Annotated[float, Quantity("speed", Range(1.0, 1e5), "280 m/s")] = Field(
-        default=280.0, description="Speed of the brake wave from the front, m/s."
-    )
-
-
-class TrainBraking(Part):
-    """The stop of a train; torque, blocks and application come with each vehicle."""
-
-    initial_speed: Annotated[float, Quantity("speed", Range(0.01, 150.0), "80 km/h")] = Field(
-        description="Speed at the start of the run, m/s."
-    )
-    onset: Annotated[float, Quantity("time", Range(0.0, 1e4), "0.5 s")] = Field(
-        description="When the driver brakes, after the start of the run, s."
-    )
-    stop_speed: Annotated[float, Quantity("speed", Range(1e-4, 50.0), "0.02 m/s")] = Field(
-        default=0.02, description="The run ends when the mean speed of all vehicles falls to this, m/s."
-    )
-
-
-class TrainFile(Root):
-    """What the file of a train says."""
-
-    noun: ClassVar[str] = "train"
-
-    vehicles: tuple[TrainEntry, ...] = Field(min_length=1, description="The vehicles from the front.")
-    coupling: Annotated[Coupling, Short(COUPLINGS)] = Field(
-        default=COUPLINGS["screw"],
-        description="The coupling of any two neighbours: `screw`, `automatic`, or its springs in a mapping.",
-    )
-    brake_pipe: BrakePipe = Field(default=BrakePipe.model_construct(), description="The pipe along the train.")
-    braking: TrainBraking = Field(description="The stop of the train.")
-    track: Track | None = Field(default=None, description="The track under one rail. Default: the first vehicle's.")
-    contact: Contact | None = Field(default=None, description="Wheel and rail. Default: the first vehicle's.")
-    solver: Solver | None = Field(default=None, description="Accuracy, patience. Default: the first vehicle's.")
-    output: Output | None = Field(default=None, description="What is written. Default: the first vehicle's.")
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """What the train says for all its vehicles, by key path."""
-        braking = {f"braking.{key}": getattr(self.braking, key) for key in ("initial_speed", "stop_speed", "onset")}
-        return braking | {key: getattr(self, key) for key in _SHARED if getattr(self, key) is not None}
 
 
 @dataclass(frozen=True)
 class TrainScenario:
     """A train as it is simulated: `vehicles` from the front, each with the onset at which the brake wave reaches it,
-    and all with the train's track, contact, solver and output."""
+    and all with the train's track, contact, solver and output; `own` as they are without what the train says."""
 
     file: TrainFile
     vehicles: tuple[Scenario, ...]
+    own: tuple[Scenario, ...]
 
     @property
     def name(self) -> str:
@@ -111,17 +36,85 @@ class TrainScenario:
         return self.file.name
 
     @property
+    def liquids(self) -> tuple[str, ...]:
+        """The models of the loads that the solver of this train is compiled for; `mixed` where it takes two at once."""
+        models = {str(one.tank.liquid.model) for one in self.vehicles}
+        if len(models) > 1 and "shallow-water" in models:
+            return ("mixed",)
+        return tuple(sorted(models - {"rigid"} if len(models) > 1 else models))
+
+    @property
     def text(self) -> str:
         """The train resolved: its own file, and the scenario of every kind of vehicle, as YAML documents."""
         kinds = {scenario_to_yaml(_at_onset(vehicle, 0.0)): None for vehicle in self.vehicles}
         return "---\n".join([scenario_to_yaml(self.file), *kinds])
 
+    def with_(self, overrides: Mapping[str, Any]) -> TrainScenario:
+        """A copy with other values, by the keys of `load_train`; values and errors are those of `Scenario.with_`."""
+        wishes = [wish for key, value in overrides.items() if (wish := _wish(key, value, key))]
+        asked = {wish.written for wish in wishes}
+        rest = {key: value for key, value in overrides.items() if key not in asked}
+        document = Document({}, origins={(): Origin()})
+        for key in rest:
+            if key.partition(".")[0] == "vehicles":
+                rule, fix = "must be `all.KEY`, `vehicles.N.KEY` or a key of the train", "write such as `all.tank.fill`"
+                document.problems.append(Problem(None, "", rule, f"`{key}`", fix, key))
+        if document.problems:
+            raise ScenarioError(self.name, document.sorted_problems())
+        file = self.file.with_(rest) if rest else self.file
+        _check_wishes(document, file, wishes)
+        found: list[Scenario] = []
+        made: dict[tuple[int, tuple[str, ...]], Scenario] = {}
+        for place, scenario in enumerate(self.own, 1):
+            mine = [wish for wish in wishes if wish.place in (None, place)]
+            kind = id(scenario), tuple(wish.written for wish in mine)
+            if kind not in made:
+                made[kind] = _changed(scenario, mine)
+            found.append(made[kind])
+        return _whole(file, document, Path(self.name), found)
+
+    def spot(self, key: str) -> tuple[Root, str]:
+        """What a key of `with_` speaks of: the train's file or a vehicle's scenario (the last one of all), and the key
+        there."""
+        wish = _wish(key, None, key)
+        if wish is None or not 1 <= (wish.place or 1) <= len(self.own):
+            return self.file, key
+        return self.own[(wish.place or len(self.own)) - 1], wish.key
+
 
 class _Wish(NamedTuple):  # an override of vehicles: place from the front, None for all; key; value; as it is written
     place: int | None
     key: str
-    value: str
+    value: Any
     written: str
+
+
+def _wish(key: str, value: Any, written: str) -> _Wish | None:
+    """The override of vehicles that a `key` asks for; None for one of the train's own."""
+    first, _, rest = key.partition(".")
+    place, _, inner = rest.partition(".")
+    if first == _EVERY and rest:
+        return _Wish(None, rest, value, written)
+    if first == "vehicles" and place.isdecimal() and inner:
+        return _Wish(int(place), inner, value, written)
+    return None
+
+
+def _changed(scenario: Scenario, wishes: Sequence[_Wish]) -> Scenario:
+    """A vehicle with what is asked of it; problems stand at the keys as they are written."""
+    mine = {wish.key: wish for wish in wishes}
+    try:
+        return scenario.with_({key: wish.value for key, wish in mine.items()}) if mine else scenario
+    except ScenarioError as error:
+        told = [
+            replace(one, override=mine[one.override].written) if one.override in mine else one for one in error.problems
+        ]
+        raise type(error)(error.file, told) from None
+
+
+def _whole(file: TrainFile, document: Document, path: Path, found: Sequence[Scenario]) -> TrainScenario:
+    """The train of such vehicles."""
+    return TrainScenario(file, tuple(_along_the_pipe(file, _with_shared(file, document, path, found))), tuple(found))
 
 
 def is_train_file(path: Path) -> bool:
@@ -145,8 +138,8 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
     file = TrainFile.of(document, str(path))
     total = sum(entry.count for entry in file.vehicles)
     _check_wishes(document, file, wishes)
-    if total > _MOST:
-        document.add(Finding(("vehicles",), f"must be at most {_MOST} in all", f"{total}", "leave some out"))
+    if total > MOST_VEHICLES:
+        document.add(Finding(("vehicles",), f"must be at most {MOST_VEHICLES} in all", f"{total}", "leave some out"))
     found: list[Scenario] = []
     load = lru_cache(maxsize=None)(load_scenario)
     for number, entry in enumerate(file.vehicles):
@@ -160,7 +153,7 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
                 raise _at_its_place(error, document, path, number, mine) from None
         if document.problems:
             raise ScenarioError(str(path), document.sorted_problems())
-    return TrainScenario(file, tuple(_along_the_pipe(file, _with_shared(file, document, path, found))))
+    return _whole(file, document, path, found)
 
 
 def _sorted(overrides: Iterable[str]) -> tuple[list[str], list[_Wish]]:
@@ -168,14 +161,11 @@ def _sorted(overrides: Iterable[str]) -> tuple[list[str], list[_Wish]]:
     own, wishes = [], []
     for text in overrides:
         key, equals, value = text.partition("=")
-        first, _, rest = key.strip().partition(".")
-        place, _, inner = rest.partition(".")
-        if first == _EVERY and rest and equals:
-            wishes.append(_Wish(None, rest, value, f"--set {key.strip()}"))
-        elif first == "vehicles" and place.isdecimal() and inner and equals:
-            wishes.append(_Wish(int(place), inner, value, f"--set {key.strip()}"))
-        else:
+        wish = _wish(key.strip(), value, f"--set {key.strip()}") if equals else None
+        if wish is None:
             own.append(text)
+        else:
+            wishes.append(wish)
     return own, wishes
 
 
@@ -191,7 +181,8 @@ def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) 
         elif _is_displaced(file, wish.key, wish.place or 1):
             place_of = wish.written.removesuffix(wish.key)
             fix = f"write `{place_of}braking.blocks=...`" if wish.key == "braking" else ""
-            fix = fix or f"write `--set {_for_all(file, wish.key)}=...`"
+            option = "--set " if wish.written.startswith("--set ") else ""
+            fix = fix or f"write `{option}{_for_all(file, wish.key)}=...`"
             document.problems.append(Problem(None, "", _rule(wish.key), f"`{wish.value}`", fix, wish.written))
     place = 1
     for number, entry in enumerate(file.vehicles):
@@ -208,7 +199,7 @@ def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) 
 def _is_displaced(file: TrainFile, key: str, place: int) -> bool:
     """Whether the train, or its first vehicle, says for all what `key` would say of the vehicle at a `place`."""
     part = key.partition(".")[0]
-    shared = part in _SHARED and (place > 1 or getattr(file, part) is not None)
+    shared = part in SHARED and (place > 1 or getattr(file, part) is not None)
     return shared or key in {"braking", *(f"braking.{name}" for name in TrainBraking.model_fields)}
 
 
@@ -222,7 +213,7 @@ def _rule(key: str) -> str:
 def _for_all(file: TrainFile, key: str) -> str:
     """How an override says `key` for the whole train: by its first vehicle where its own file says nothing of it."""
     part = key.partition(".")[0]
-    return f"{_EVERY}.{key}" if part in _SHARED and getattr(file, part) is None else key
+    return f"{_EVERY}.{key}" if part in SHARED and getattr(file, part) is None else key
 
 
 def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:
@@ -263,7 +254,7 @@ def _at_its_place(
 
 def _with_shared(file: TrainFile, document: Document, path: Path, found: Sequence[Scenario]) -> Iterator[Scenario]:
     """The vehicles with what the train says for all of them, or else the first one; each kind is checked once."""
-    settings = {key: getattr(found[0], key) for key in _SHARED} | file.settings
+    settings = {key: getattr(found[0], key) for key in SHARED} | file.settings
     kinds: dict[int, Scenario] = {}
     for number, scenario in enumerate(found, 1):
         if id(scenario) not in kinds:

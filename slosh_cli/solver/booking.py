@@ -57,11 +57,14 @@ def _settle_extremes(vehicle, step):
 
 @inner_kernel
 def _settle_slides(vehicle, time, step):
-    """How long locked wheels slide from `time` (s) on, how far and with what work; they are as in the step in hand."""
+    """How long locked wheels slide from `time` (s) on, how far and with what work; they are as in the step in hand.
+
+    A vehicle that stands while its train still moves does not slide.
+    """
     account, points = vehicle.account, vehicle.points
     start, middle, end = points[START], points[MIDDLE], points[END]
     for i in range(vehicle.wagon.wheels):
-        if not vehicle.locked[i]:
+        if not vehicle.locked[i] or abs(start.v[0]) < vehicle.line.standing:
             account.sliding[i] = account.sliding_work[i] = 0.0
             continue
         if account.locked_time[i] == 0.0:

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 from slosh_cli.errors import UsageError, ValueRefused
 from slosh_cli.scenario import Braking, Scenario, find_packaged, load_scenario, scenario_to_yaml
-from slosh_cli.scenario.train_file import is_train_file
+from slosh_cli.scenario.train_file import TrainScenario, is_train_file, load_train
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values, expanded, measured
-from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
+from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study, TrainStudy, WagonStudy
 from slosh_cli.study.study_file import is_study_file, read_study_file
 
 _PAPER_WAGON: Final = "paper-80-liquid"
@@ -52,7 +52,10 @@ def build(wishes: Wishes) -> Study:
 
 
 def grid(
-    scenario: Scenario | str | Path | None = None, vary: Mapping[str, Any] | None = None, *, histories: bool = False
+    scenario: Scenario | TrainScenario | str | Path | None = None,
+    vary: Mapping[str, Any] | None = None,
+    *,
+    histories: bool = False,
 ) -> Study:
     """The study of a script: a scenario, or the file of a scenario or study, and `vary`, key path -> values.
 
@@ -64,10 +67,26 @@ def grid(
     return _completed(Wishes(histories=histories), file, name, base, axes)
 
 
-def _completed(wishes: Wishes, file: str, name: str, base: Scenario, axes: tuple[Axis, ...]) -> Study:
+def _completed(wishes: Wishes, file: str, name: str, base: Scenario | TrainScenario, axes: tuple[Axis, ...]) -> Study:
+    if isinstance(base, TrainScenario):
+        return TrainStudy(name, base, _train_axes(wishes, file, axes), file, wishes.histories)
     axes = _with_axes(axes, _braking_axes(wishes, base, axes))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
-    return Study(name, base, axes, file, wishes.histories)
+    return WagonStudy(name, base, axes, file, wishes.histories)
+
+
+def _train_axes(wishes: Wishes, file: str, axes: tuple[Axis, ...]) -> tuple[Axis, ...]:
+    """What varies in a train: what was asked for. Raises UsageError for nothing, and for what each vehicle has."""
+    for option, given, key in (("--torque", wishes.torques, TORQUE), ("--liquid", wishes.liquids, LIQUID)):
+        if given is not None or any(axis.key == key for axis in axes):
+            fix = f"write `--vary all.{key}=...`, or `vehicles.N.{key}` for the N-th from the front"
+            raise UsageError(f"{file} is a train, whose vehicles have their own {key}; {fix}", option)
+    if wishes.speeds is not None:
+        axes = _with_axes(axes, [_axis(SPEED, wishes.speeds, "--v0", "km/h")])
+    if not axes:
+        fix = "write `--v0 60,80`, `--vary all.tank.fill=0.5,0.9` or `--vary coupling=screw,automatic`, say"
+        raise UsageError(f"a study of a train needs something that varies; {fix}", file)
+    return axes
 
 
 def paper_wagon() -> Scenario:
@@ -76,21 +95,26 @@ def paper_wagon() -> Scenario:
 
 
 def _source(
-    source: Scenario | str | Path | None, overrides: Sequence[str]
-) -> tuple[str, str, Scenario, tuple[Axis, ...]]:
+    source: Scenario | TrainScenario | str | Path | None, overrides: Sequence[str]
+) -> tuple[str, str, Scenario | TrainScenario, tuple[Axis, ...]]:
     """What messages call the source, the study's name, the base scenario and the axes of a study file."""
     if source is None:
         wagon = load_scenario(find_packaged(_PAPER_WAGON), overrides)
         return _PAPER_STUDY, _PAPER_STUDY if wagon.name == _PAPER_WAGON else wagon.name, wagon, ()
-    if isinstance(source, Scenario):
+    if isinstance(source, Scenario | TrainScenario):
         return source.name, source.name, source, ()
     if is_study_file(Path(source)):
         study = read_study_file(Path(source))
-        return str(source), study.name, load_scenario(study.base, overrides), study.axes
-    if is_train_file(Path(source)):
-        raise UsageError(f"{source} is a train; studies are of wagons, so run it with `slosh run --set`", str(source))
-    scenario = load_scenario(source, overrides)
+        return str(source), study.name, _loaded(study.base, overrides), study.axes
+    scenario = _loaded(source, overrides)
     return str(source), scenario.name, scenario, ()
+
+
+def _loaded(source: str | Path, overrides: Sequence[str]) -> Scenario | TrainScenario:
+    """The scenario or the train of a file."""
+    if is_train_file(Path(source)):
+        return load_train(source, overrides)
+    return load_scenario(source, overrides)
 
 
 def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis]) -> list[Axis]:
@@ -141,7 +165,7 @@ def _axis(key: str, spec: str, option: str, bare_unit: str = "") -> Axis:
         raise UsageError(f"{option} {refused}", option) from None
 
 
-def _given(base: Scenario, key: str, spec: Any) -> Axis:
+def _given(base: Scenario | TrainScenario, key: str, spec: Any) -> Axis:
     """The axis of a script's `spec`; arrays of NumPy will do."""
     found = spec.tolist() if hasattr(spec, "tolist") else spec
     entries = found if isinstance(found, list | tuple) else [found]
@@ -151,12 +175,13 @@ def _given(base: Scenario, key: str, spec: Any) -> Axis:
         raise UsageError(f"vary {key} {refused}", f"vary {key}") from None
 
 
-def _with_unit(base: Scenario, key: str, value: Any) -> Any:
+def _with_unit(base: Scenario | TrainScenario, key: str, value: Any) -> Any:
     """A number with the SI unit in which the scenario tells its own value of `key`; anything else as it is."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
-    own: Any = parse(scenario_to_yaml(base), base.name).data
-    for step in key.split("."):
+    root, steps = (base, key) if isinstance(base, Scenario) else base.spot(key)
+    own: Any = parse(scenario_to_yaml(root), base.name).data
+    for step in steps.split("."):
         own = own.get(step) if isinstance(own, dict) else None
     told = measured(own) if isinstance(own, str) else None
     return f"{value!r} {told[1]}" if told else value

@@ -59,6 +59,8 @@ _Curve = dict[float, _Point]
 def applies(study: Study, paper: Scenario) -> bool:
     """Whether the study is the paper's Figure 3: its wagon, its two speeds, several torques, liquid and solid."""
     axes = {axis.key: axis for axis in study.axes}
+    if not isinstance(study.base, Scenario):
+        return False
     if any(len(axis.values) > 1 and key not in (SPEED, TORQUE, LIQUID) for key, axis in axes.items()):
         return False
     models = set(axes[LIQUID].values)

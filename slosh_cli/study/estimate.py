@@ -47,12 +47,12 @@ def seconds_per_stop(study: "Study", planned: "Plan", journal: "Journal | None")
 def _try(study: "Study", index: int) -> float:
     """Seconds that one stop takes, or would take."""
     from slosh_cli.errors import SloshError
-    from slosh_cli.results.simulate import simulate
     from slosh_cli.solver.run import Cancelled
+    from slosh_cli.study.outcome import run_of
 
     deadline = _Deadline()
     try:
-        simulate(study.stop(index).scenario, progress=deadline.progress, cancel=deadline)
+        run_of(study.stop(index).scenario, progress=deadline.progress, cancel=deadline)
     except Cancelled:
         return _PATIENCE / max(deadline.fraction, 1e-3)
     except SloshError:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from slosh_cli.errors import ScenarioError
 from slosh_cli.results.files import FileError
+from slosh_cli.results.train_result import TrainResult
 from slosh_cli.study.journal import Journal
 from slosh_cli.study.key import history_key
 from slosh_cli.study.outcome import FinishedStop, without_result
@@ -18,6 +19,7 @@ from slosh_cli.study.plan import Stop, Study
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario
+    from slosh_cli.scenario.train_file import TrainScenario
 
 HISTORIES: Final = "histories"
 """Folder of the history files inside the study's."""
@@ -61,7 +63,7 @@ class Plan:
     unwritten: list[str] = field(default_factory=list)
 
 
-def _history_file(scenario: Scenario) -> str:
+def _history_file(scenario: Scenario | TrainScenario) -> str:
     """Path of a stop's history file within the study's folder: another for every change that the history shows."""
     return f"{HISTORIES}/{history_key(scenario)[:20]}.h5"
 
@@ -133,9 +135,13 @@ def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, c
 
 def _write_history(outcome: FinishedStop, plan: Plan) -> None:
     if outcome.result is not None:
-        from slosh_cli.results.hdf5 import write_history
+        from slosh_cli.results.hdf5 import write_history, write_train
 
+        path = plan.folder / _history_file(outcome.result.scenario)
         try:
-            write_history(outcome.result, plan.folder / _history_file(outcome.result.scenario))
+            if isinstance(outcome.result, TrainResult):
+                write_train(outcome.result, path)
+            else:
+                write_history(outcome.result, path)
         except FileError as error:
             plan.unwritten.append(str(error))

@@ -8,7 +8,6 @@ from itertools import groupby
 from typing import Any, Final
 
 from slosh_cli.results.answers import Place, Shown
-from slosh_cli.results.result import Record
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study
 
@@ -31,9 +30,10 @@ def columns(study: Study, rows: Iterable[_Row] = ()) -> list[str]:
     """The columns of a study's table, in order: the ones every study has and what else `rows` hold."""
     varied = [column_of(axis) for axis in _own_axes(study)]
     head, answers, words = (
-        [column for one in Record.in_table(Shown.STUDY, *places) for column in one.columns] for places in _PLACES
+        [column for one in study.answers.in_table(Shown.STUDY, *places) for column in one.columns] for places in _PLACES
     )
-    known = [*head, *varied, _RATIO, *answers]
+    ratio = [_RATIO] if any(axis.key == LIQUID for axis in study.axes) else []
+    known = [*head, *varied, *ratio, *answers]
     others = dict.fromkeys(name for row in rows for name in row)
     end = [*words, *(["history"] if study.histories else [])]
     return [*known, *(name for name in others if name not in known and name not in end), *end]
@@ -52,10 +52,9 @@ def rows(study: Study, answer: Callable[[int], Mapping[str, Any] | None]) -> Ite
     for _, group in groupby(range(study.size), key=lambda index: _point(study, index)):
         found = [(index, answer(index)) for index in group]
         known = [_row(study, index, given) for index, given in found if given is not None]
-        solid = next((row for row in known if row["liquid"] == SOLID), None)
+        solid = next((row for row in known if row.get("liquid") == SOLID), None)
         for row in known:
-            row[_RATIO] = _ratio(row, solid)
-            yield row
+            yield row if solid is None and "liquid" not in row else row | {_RATIO: _ratio(row, solid)}
 
 
 def _point(study: Study, index: int) -> tuple[int, ...]:

@@ -10,11 +10,12 @@ from contextlib import contextmanager
 from threading import Event
 from typing import TYPE_CHECKING
 
-from slosh_cli.study.outcome import FinishedStop, solve
+from slosh_cli.study.outcome import FinishedStop, run_of, solve
 from slosh_cli.study.plan import Stop
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario
+    from slosh_cli.scenario.train_file import TrainScenario
 
 _TURN = 1e-4
 """Seconds for which a thread that computes in Python may keep another from it."""
@@ -106,15 +107,14 @@ def _finished(futures: Iterable[Future[FinishedStop]], cancel: Event) -> list[Fi
     return sorted(outcomes, key=lambda outcome: outcome.index)
 
 
-def warm_up(scenario: Scenario) -> None:
+def warm_up(scenario: Scenario | TrainScenario) -> None:
     """Load or compile the kernels here and now, on this thread, where an interrupt is heard."""
     from slosh_cli.errors import SloshError
-    from slosh_cli.results.simulate import simulate
     from slosh_cli.solver.run import Cancelled
 
     enough = Event()
     enough.set()
     try:
-        simulate(scenario, cancel=enough)
+        run_of(scenario, cancel=enough)
     except (Cancelled, SloshError):
         return

@@ -13,11 +13,12 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from slosh_cli.report import figures
-from slosh_cli.report.study_figures import OUTSIDE, braking_distance, draw_study
-from slosh_cli.report.study_pages import Mark, Page, StopsPanel, pages
+from slosh_cli.report.study_figures import OUTSIDE, draw_study, study_figure
+from slosh_cli.report.study_pages import Answered, Mark, Page, StopsPanel, pages
 from slosh_cli.results.result import Status
 from slosh_cli.study.build import Wishes, build
 
+DISTANCE = Answered("Braking distance", "braking_distance", "braking distance / m", "m", lambda _: [])
 STOPPED, PITCH_LIMIT = Status.STOPPED, Status.PITCH_LIMIT
 
 
@@ -33,7 +34,7 @@ def page(**changes: Any) -> Page:
         StopsPanel("160 km/h", {"modal": liquid, "rigid": solid}),
     ]
     given: dict[str, Any] = {
-        "title": "Braking distance", "conditions": "a wagon", "label": "torque / kN m", "unit": "kN m",
+        "shown": DISTANCE, "conditions": "a wagon", "label": "torque / kN m", "unit": "kN m",
         "best": "most effective torque", "panels": panels,
     }  # fmt: skip
     return Page(**(given | changes))
@@ -52,7 +53,7 @@ def places(found: list[Line2D], **look: Any) -> list[tuple[float, float]]:
 
 
 def test_a_stop_outside_linear_theory_is_hollow_one_within_is_filled() -> None:
-    axes = braking_distance(page()).axes[0]
+    axes = study_figure(page()).axes[0]
     circles = [line for line in lines(axes, BLUE, "o") if line.get_markersize() < 10]
     assert places(circles, markerfacecolor=BLUE) == [(2.5, 430.0), (5.0, 218.0)]
     assert places(circles, markerfacecolor="white") == [(7.5, 155.0), (12.5, 101.0), (15.0, 103.0)]
@@ -60,7 +61,7 @@ def test_a_stop_outside_linear_theory_is_hollow_one_within_is_filled() -> None:
 
 
 def test_no_line_leads_to_a_stop_without_an_answer_and_dotted_ones_to_those_outside_linear_theory() -> None:
-    axes = braking_distance(page()).axes[0]
+    axes = study_figure(page()).axes[0]
     ways = {line.get_linestyle(): line for line in lines(axes, BLUE, "None") if len(line.get_xdata())}
     assert set(ways) == {"-", "--"}
     assert list(ways["-"].get_xdata()[1:]) == [2.5, 5.0]
@@ -75,7 +76,7 @@ def test_no_line_leads_to_a_stop_without_an_answer_and_dotted_ones_to_those_outs
 def test_the_legend_of_three_models_stays_on_the_page() -> None:
     given = page()
     panels = [StopsPanel(one.title, {**one.curves, "shallow-water": one.curves["rigid"]}) for one in given.panels]
-    figure = braking_distance(page(panels=panels))
+    figure = study_figure(page(panels=panels))
     (legend,) = figure.legends
     box = legend.get_window_extent()
     assert [text.get_text() for text in legend.get_texts()][-1] == "most effective torque"
@@ -85,7 +86,7 @@ def test_the_legend_of_three_models_stays_on_the_page() -> None:
 
 
 def test_a_stop_without_an_answer_is_a_cross_at_the_top_in_the_colour_of_its_curve() -> None:
-    axes = braking_distance(page()).axes[0]
+    axes = study_figure(page()).axes[0]
     (cross,) = lines(axes, BLUE, "x")
     assert list(cross.get_xdata()) == [10.0]
     assert 0.9 < cross.get_ydata()[0] < 1.0
@@ -94,7 +95,7 @@ def test_a_stop_without_an_answer_is_a_cross_at_the_top_in_the_colour_of_its_cur
 
 
 def test_the_most_effective_torque_of_every_curve_is_ringed_and_named() -> None:
-    axes = braking_distance(page()).axes[0]
+    axes = study_figure(page()).axes[0]
     rings = {line.get_color(): line.get_data() for line in axes.lines if line.get_markersize() > 12}
     assert {color: (data[0][0], data[1][0]) for color, data in rings.items()} == {
         BLUE: (12.5, 101.0),
@@ -105,7 +106,7 @@ def test_the_most_effective_torque_of_every_curve_is_ringed_and_named() -> None:
 
 def test_the_legend_names_what_occurs_and_nothing_else() -> None:
     def legend(shown: Page) -> list[str]:
-        return [text.get_text() for text in braking_distance(shown).legends[0].get_texts()]
+        return [text.get_text() for text in study_figure(shown).legends[0].get_texts()]
 
     assert legend(page()) == [
         "liquid (modal)", "equivalent solid", "outside linear theory", "pitch-limit", "most effective torque",
@@ -118,7 +119,7 @@ def test_a_panel_without_any_answer_says_so() -> None:
     nothing = StopsPanel(
         "80 km/h", {"modal": [Mark(1.0, None, PITCH_LIMIT, False), Mark(2.0, None, PITCH_LIMIT, False)]}
     )
-    (axes,) = braking_distance(page(panels=[nothing])).axes
+    (axes,) = study_figure(page(panels=[nothing])).axes
     assert [text.get_text() for text in axes.texts] == ["no stop has an answer"]
     assert len(lines(axes, BLUE, "x")) == 2
 
@@ -224,7 +225,7 @@ def test_words_along_the_bottom_are_named() -> None:
     ]
     (found,) = pages(study, rows)
     assert list(found.ticks) == ["dry", "wet"]
-    (axes,) = braking_distance(found).axes
+    (axes,) = study_figure(found).axes
     assert [label.get_text() for label in axes.get_xticklabels()] == ["dry", "wet"]
 
 
