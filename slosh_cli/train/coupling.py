@@ -125,16 +125,22 @@ class Couplings(Block):
         return total
 
     @inner_kernel
-    def accept(self, time):
-        """Note the extremes of the step that ends at `time` (s), and let its end be the next start.
+    def _extremes(self, coupling):
+        """Least and largest force (N) of a coupling in the step in hand.
 
         A spring with friction goes from stage to stage one way, but for where it turns back.
         """
+        start, middle, end = self.force[START, coupling], self.force[MIDDLE, coupling], self.force[END, coupling]
+        if self.rubs == 0:
+            return step_extremes(start, middle, end)
+        one, two = self.turn[MIDDLE, coupling], self.turn[END, coupling]
+        return min(start, one, middle, two, end), max(start, one, middle, two, end)
+
+    @inner_kernel
+    def accept(self, time):
+        """Note the extremes of the step that ends at `time` (s), and let its end be the next start."""
         for j in range(self.taken.size):
-            low, high = step_extremes(self.force[START, j], self.force[MIDDLE, j], self.force[END, j])
-            if self.rubs == 1:
-                turns, ends = (self.turn[MIDDLE, j], self.turn[END, j]), (self.force[MIDDLE, j], self.force[END, j])
-                low, high = min(turns[0], turns[1], ends[0], ends[1]), max(turns[0], turns[1], ends[0], ends[1])
+            low, high = self._extremes(j)
             if low < self.least[j]:
                 self.least[j], self.least_time[j] = low, time
             if high > self.largest[j]:
@@ -149,11 +155,13 @@ class Couplings(Block):
         """Put a coupling's force and compression within the step at the end of its leading vehicle's `row`; the weights
         are those of `method.hermites` and `method.parabolas`."""
         force, place, rate = self.force, self.compression, self.rate
-        row[row.size - 2] = (
+        low, high = self._extremes(coupling)
+        between = (
             parabola[0] * force[START, coupling]
             + parabola[1] * force[MIDDLE, coupling]
             + parabola[2] * force[END, coupling]
         )
+        row[row.size - 2] = min(max(between, low), high)
         row[row.size - 1] = (
             cubic[0] * place[START, coupling]
             + cubic[1] * rate[START, coupling]
