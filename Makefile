@@ -15,7 +15,7 @@ help:
 	@echo "make bench-batch  ten thousand stops, make bench-docs: put the last results into docs/speed.md"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
-	@echo "make studies   the studies of the documentation again (some twenty minutes)"
+	@echo "make studies   the studies of the documentation again (some forty minutes)"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
@@ -75,6 +75,7 @@ reference: $(READY)
 studies: $(READY)
 	$(BIN)/python docs/identifiability.py
 	$(BIN)/python docs/real_brakes.py
+	$(BIN)/python docs/train_couplers.py
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -40,6 +40,11 @@ def real_brakes():
     return script("real_brakes")
 
 
+@pytest.fixture(scope="module")
+def train_couplers():
+    return script("train_couplers")
+
+
 def stored_rows():
     with (DOCS / "identifiability.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
@@ -180,6 +185,24 @@ def test_rows_of_the_table_of_real_brakes_are_what_a_run_gives_today(real_brakes
         for name, text in found.items():
             told = stored[name]
             assert text == told or float(text) == pytest.approx(float(told), rel=1e-4, abs=1e-3), (row, name)
+
+
+def test_the_page_of_train_couplers_is_that_of_its_table(train_couplers):
+    rows = train_couplers.read()
+    assert {tuple(str(value) for value in stop.values()) for stop in train_couplers.settings()} == {
+        (*train_couplers.conditions(row), row["liquid"]) for row in rows
+    }
+    assert len(rows) == len(train_couplers.settings())
+    assert (DOCS / "train-couplers.md").read_text(encoding="utf-8") == train_couplers.page(rows)
+
+
+@pytest.mark.parametrize("liquid", ["modal", "rigid"])
+def test_rows_of_the_table_of_train_couplers_are_what_a_run_gives_today(train_couplers, liquid, tmp_path):
+    asked = dict(zip(train_couplers.CONDITIONS, (10, 0.5, "P", "screw"), strict=True)) | {"liquid": liquid}
+    (stored,) = train_couplers.only(train_couplers.read(), **asked)
+    found = train_couplers.examined(asked, train_couplers.train_of(asked, tmp_path))
+    for name, text in found.items():
+        assert text == stored[name] or float(text) == pytest.approx(float(stored[name]), rel=1e-4), name
 
 
 def test_what_the_findings_say_in_prose(stop):
