@@ -11,6 +11,7 @@ from slosh_cli.scenario.rules import Finding, Values
 from slosh_cli.scenario.schema_line import GRADIENT, Unevenness
 from slosh_cli.scenario.short import Short
 from slosh_cli.scenario.units import at_most, shown
+from slosh_cli.scenario.words import Choice
 
 
 class Rail(Part):
@@ -62,6 +63,11 @@ class Domain(Part):
 class Track(Part):
     """The track under one rail."""
 
+    model: Annotated[str, Choice(("moving-element", "rigid"))] = Field(
+        default="moving-element",
+        description="moving-element: the rail moves in finite elements; rigid: each wheel stands on the rail's static "
+        "stiffness, for long trains.",
+    )
     rail: Rail = Field(description="The rail.")
     foundation: Foundation = Field(description="What the rail lies on.")
     domain: Domain = Field(default=Domain.model_construct(), description="How much of it is computed, and how finely.")

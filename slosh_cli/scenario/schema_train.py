@@ -29,6 +29,8 @@ _BRANCH: Final = Points(
 )
 SHARED: Final = ("track", "contact", "solver", "output")
 """Parts that a train may have for all its vehicles; where left out they are those of the first one's file."""
+TRACK_MODEL: Final = "track.model"
+"""A key of the track that each vehicle may have of its own."""
 MOST_VEHICLES: Final = 1000
 Branch = tuple[tuple[float, float], ...]
 """Travel (m) and force (N) of the corners of a coupling's branch, the first one at (0, 0)."""
@@ -168,6 +170,10 @@ class TrainEntry(Part):
     )
 
 
+_RIGID: Final = Track.model_construct(model="rigid", rail=None, foundation=None)
+"""Stands for the first vehicle's track, with each wheel on the rail's static stiffness."""
+
+
 class BrakePipe(Part):
     """The pipe along the train that tells the brakes to set in."""
 
@@ -202,7 +208,10 @@ class TrainFile(Root):
     )
     brake_pipe: BrakePipe = Field(default=BrakePipe.model_construct(), description="The pipe along the train.")
     braking: TrainBraking = Field(description="The stop of the train.")
-    track: Track | None = Field(default=None, description="The track under one rail. Default: the first vehicle's.")
+    track: Annotated[Track | None, Short({"rigid": _RIGID})] = Field(
+        default=None,
+        description="The track under one rail; `rigid`: its static stiffness alone. Default: the first vehicle's.",
+    )
     contact: Contact | None = Field(default=None, description="Wheel and rail. Default: the first vehicle's.")
     solver: Solver | None = Field(default=None, description="Accuracy, patience. Default: the first vehicle's.")
     output: Output | None = Field(default=None, description="What is written. Default: the first vehicle's.")
@@ -211,4 +220,7 @@ class TrainFile(Root):
     def settings(self) -> dict[str, Any]:
         """What the train says for all its vehicles, by key path."""
         braking = {f"braking.{key}": getattr(self.braking, key) for key in ("initial_speed", "stop_speed", "onset")}
-        return braking | {key: getattr(self, key) for key in SHARED if getattr(self, key) is not None}
+        parts = {key: getattr(self, key) for key in SHARED if getattr(self, key) is not None}
+        if self.track is not None and self.track == _RIGID:
+            parts[TRACK_MODEL] = parts.pop("track").model
+        return braking | parts

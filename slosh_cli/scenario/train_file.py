@@ -15,7 +15,7 @@ from slosh_cli.scenario.loader import Root, load_document, read, scenario_to_yam
 from slosh_cli.scenario.packaged import find_packaged
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema import Scenario, load_scenario
-from slosh_cli.scenario.schema_train import MOST_VEHICLES, SHARED, TrainBraking, TrainEntry, TrainFile
+from slosh_cli.scenario.schema_train import MOST_VEHICLES, SHARED, TRACK_MODEL, TrainBraking, TrainEntry, TrainFile
 from slosh_cli.scenario.units import plain
 
 _EVERY: Final = "all"
@@ -94,10 +94,15 @@ def _wish(key: str, value: Any, written: str) -> _Wish | None:
     first, _, rest = key.partition(".")
     place, _, inner = rest.partition(".")
     if first == _EVERY and rest:
-        return _Wish(None, rest, value, written)
+        return _Wish(None, _in_full(rest, value), value, written)
     if first == "vehicles" and place.isdecimal() and inner:
-        return _Wish(int(place), inner, value, written)
+        return _Wish(int(place), _in_full(inner, value), value, written)
     return None
+
+
+def _in_full(key: str, value: Any) -> str:
+    """The key that a vehicle's `track: rigid` is short for; any other key as it is."""
+    return TRACK_MODEL if key == "track" and isinstance(value, str) and value.strip() == "rigid" else key
 
 
 def _changed(scenario: Scenario, wishes: Sequence[_Wish]) -> Scenario:
@@ -146,7 +151,8 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
         source = _source(document, path, number, entry)
         for place in range(len(found) + 1, len(found) + 1 + entry.count) if source else ():
             mine = [wish for wish in wishes if wish.place in (None, place)]
-            settings = tuple(f"{key}={json.dumps(value)}" for key, value in entry.set.items())
+            given = {_in_full(key, value): value for key, value in entry.set.items()}
+            settings = tuple(f"{key}={json.dumps(value)}" for key, value in given.items())
             try:
                 found.append(load(source, (*settings, *(f"{wish.key}={wish.value}" for wish in mine))))
             except ScenarioError as error:
@@ -187,7 +193,7 @@ def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) 
     place = 1
     for number, entry in enumerate(file.vehicles):
         for key, value in entry.set.items():
-            if _is_displaced(file, key, place):
+            if _is_displaced(file, _in_full(key, value), place):
                 fix = f"write `{key}` for the train, outside of `vehicles:`"
                 fix = "write such as `braking.blocks: ...`" if key == "braking" else fix
                 document.add(Finding(("vehicles", number, "set", key), _rule(key), plain(value), fix))
@@ -199,7 +205,8 @@ def _check_wishes(document: Document, file: TrainFile, wishes: Sequence[_Wish]) 
 def _is_displaced(file: TrainFile, key: str, place: int) -> bool:
     """Whether the train, or its first vehicle, says for all what `key` would say of the vehicle at a `place`."""
     part = key.partition(".")[0]
-    shared = part in SHARED and (place > 1 or getattr(file, part) is not None)
+    own = key == TRACK_MODEL and file.track is None
+    shared = part in SHARED and not own and (place > 1 or getattr(file, part) is not None)
     return shared or key in {"braking", *(f"braking.{name}" for name in TrainBraking.model_fields)}
 
 
@@ -258,8 +265,9 @@ def _with_shared(file: TrainFile, document: Document, path: Path, found: Sequenc
     kinds: dict[int, Scenario] = {}
     for number, scenario in enumerate(found, 1):
         if id(scenario) not in kinds:
+            own = {} if file.track is not None else {TRACK_MODEL: scenario.track.model}
             try:
-                kinds[id(scenario)] = scenario.with_(settings)
+                kinds[id(scenario)] = scenario.with_(settings | own)
             except ScenarioError as error:
                 told = [replace(problem, line=document.origin(("braking",)).line) for problem in error.problems]
                 raise ScenarioError(f"{path}, vehicle {number} ({scenario.name})", told) from None

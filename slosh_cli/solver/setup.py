@@ -11,7 +11,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import PhysicsError
 from slosh_cli.scenario import Scenario, Track, Wagon
-from slosh_cli.scenario.rail_reach import computed_lengths
+from slosh_cli.scenario.rail_reach import computed_lengths, critical_speed
 from slosh_cli.scenario.schema_train import Coupling
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver.events import SHORTEST_STEP
@@ -27,7 +27,7 @@ from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 from slosh_cli.tank.still import shallow_liquid
 from slosh_cli.track.contact import contact_model
 from slosh_cli.track.line import Line
-from slosh_cli.track.mem import RailModel, critical_speed, rail_model
+from slosh_cli.track.mem import RailModel, rail_model
 from slosh_cli.track.surface import rolling_surface
 from slosh_cli.train.coupling import couplings
 from slosh_cli.wagon.brake import brake_of
@@ -133,7 +133,7 @@ def _vehicle(scenario: Scenario, behind: float) -> Vehicle:
     surface = rolling_surface(scenario.track.unevenness, flats, ahead - behind, wagon.wheel_radius)
     contact = contact_model(scenario.contact, wagon.wheel_radius, surface)
     _check_mass_matrix(wagon, liquid)
-    _check_speed(scenario, rail)
+    _check_speed(scenario)
     start = initial_point(wagon, rail, contact, scenario.braking.initial_speed)
     return new_vehicle(
         wagon,
@@ -219,8 +219,8 @@ def _check_mass_matrix(wagon: WagonModel, liquid: Slosh) -> None:
         )
 
 
-def _check_speed(scenario: Scenario, rail: RailModel) -> None:
-    limit = critical_speed(rail)
+def _check_speed(scenario: Scenario) -> None:
+    limit = critical_speed(scenario.track.rail, scenario.track.foundation)
     if scenario.braking.initial_speed >= limit:
         raise PhysicsError(
             f"The initial speed must stay below the track's critical speed of {limit:.1f} m/s, but is "

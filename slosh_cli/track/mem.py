@@ -26,7 +26,8 @@ class RailModel(Block):
     Five forms, one after the other in rows of nodes as `banded` describes them: `forms` (r, 60) for `runs` (r, 4). With
     N the shape functions they are `MASS` INT N N, `TENSION` INT N' N', `DRIFT` INT N N', `BENDING` INT N'' N'', `TWIST`
     INT N' N''. The deflection at either end is held: its rows are zero but for a mass of its own, so that it stays
-    at zero. `contact` (wheels,) are the nodes under the wheels.
+    at zero. `contact` (wheels,) are the nodes under the wheels. A rail of springs has one node per wheel and `MASS` one
+    for each alone; mass, stiffness and damping are then those of a wheel's spring.
     """
 
     runs: Unsigned
@@ -97,10 +98,12 @@ def _rows(forms: Vector, left: int | None, right: int | None) -> Vector:
 
 
 def rail_model(track: Track, wheels: Vector) -> RailModel:
-    """Assemble the rail under `wheels` (m, their positions relative to the wagon's centre).
+    """The rail under `wheels` (m, their positions relative to the wagon's centre), by the model of the track.
 
     Raises ValueError where the wheels do not fit, or a length of the domain is still to be computed.
     """
+    if track.model == "rigid":
+        return _springs(track, wheels.size)
     length, element_length = track.domain.length, track.domain.element_length
     if length is None or element_length is None:
         raise ValueError("length and element_length of the domain must be given here")
@@ -128,6 +131,33 @@ def rail_model(track: Track, wheels: Vector) -> RailModel:
         shear_stiffness=foundation.shear_stiffness,
         damping=foundation.damping,
         shear_damping=foundation.shear_damping,
+    )
+
+
+def _springs(track: Track, wheels: int) -> RailModel:
+    """The rail's static stiffness under each wheel, with what moves and what damps in the shape of a static load.
+
+    That shape is `y = y0 (r2 exp(-r1 |x|) - r1 exp(-r2 |x|))/(r2 - r1)`, with r1 and r2 the roots of
+    `EI r^4 - k_sm r^2 + k = 0`; with their sum s and product p its integrals are `INT y^2 = y0^2 (s^2 + p)/(p s)` and
+    `INT y'^2 = y0^2 p/s`, the stiffness is `2 EI p s` (theory section 6). Each wheel has a node of its own.
+    """
+    foundation, bending = track.foundation, track.rail.youngs_modulus * track.rail.second_moment
+    product = np.sqrt(foundation.stiffness / bending)
+    total = np.sqrt(foundation.shear_stiffness / bending + 2.0 * product)
+    length, slopes = (total * total + product) / (product * total), product / total
+    forms = np.zeros((1, _FORMS))
+    forms[0, MASS + 2] = forms[0, MASS + 9] = 1.0
+    return RailModel(
+        runs=np.array([[0, wheels, 0, 0]], dtype=np.uint64),
+        forms=forms,
+        contact=np.arange(wheels),
+        nodes=wheels,
+        mass=track.rail.mass_per_length * length,
+        bending_stiffness=bending,
+        stiffness=2.0 * bending * product * total,
+        shear_stiffness=0.0,
+        damping=foundation.damping * length + foundation.shear_damping * slopes,
+        shear_damping=0.0,
     )
 
 
