@@ -18,23 +18,29 @@ if TYPE_CHECKING:
     from slosh_cli.application.stop import simulate
     from slosh_cli.application.studies import sweep
     from slosh_cli.application.tank import coefficients
+    from slosh_cli.application.train import simulate_train
     from slosh_cli.application.validation import validate
     from slosh_cli.results.result import Result
+    from slosh_cli.results.train_result import TrainResult
     from slosh_cli.scenario import Scenario, load_scenario
+    from slosh_cli.scenario.train_file import load_train
 
 __all__ = [
-    "Result", "Scenario", "__version__", "coefficients", "excite", "load_scenario", "plot", "simulate", "sweep",
-    "validate",
+    "Result", "Scenario", "TrainResult", "__version__", "coefficients", "excite", "load_scenario", "load_train", "plot",
+    "simulate", "simulate_train", "sweep", "validate",
 ]  # fmt: skip
 
 _HOMES = {
     "Result": "slosh_cli.results.result",
     "Scenario": "slosh_cli.scenario",
+    "TrainResult": "slosh_cli.results.train_result",
     "coefficients": "slosh_cli.application.tank",
     "excite": "slosh_cli.application.excitation",
     "load_scenario": "slosh_cli.scenario",
+    "load_train": "slosh_cli.scenario.train_file",
     "plot": "slosh_cli.application.plotting",
     "simulate": "slosh_cli.application.stop",
+    "simulate_train": "slosh_cli.application.train",
     "sweep": "slosh_cli.application.studies",
     "validate": "slosh_cli.application.validation",
 }

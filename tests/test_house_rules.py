@@ -28,6 +28,7 @@ DEFINED_AGAIN = {
     "critical_speed": "the same formula of a scenario's track and of its assembled rail",
     "excite": "the tank's motion, and the function of the public interface that reads its words",
     "simulate": "the integration, and the function of the public interface that takes a path",
+    "simulate_train": "the same of a train",
 }
 """Public names that several modules define, and why."""
 

@@ -35,7 +35,7 @@ def test_every_block_runs_and_only_its_own_words_are_printed(
 
 def test_the_files_are_those_that_the_page_names(outcome: tuple[Path, "subprocess.CompletedProcess[str]"]) -> None:
     folder, _ = outcome
-    assert {file.name for file in folder.iterdir()} == {"torques", "figures", "study.pdf"}
+    assert {file.name for file in folder.iterdir()} == {"torques", "figures", "study.pdf", "two.yaml"}
     assert {file.name for file in (folder / "torques").iterdir()} == {
         "braking_distance.csv", "braking_distance.png", "braking_distance.svg", "journal.sqlite",
     }  # fmt: skip

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slosh_cli.results.result import Record
+    from slosh_cli.results.train_result import TrainHistory, TrainResult
     from slosh_cli.validation.case import CaseResult
 
     Figures = dict[str, Callable[[], Figure]]
@@ -28,7 +29,9 @@ class Drawable(Protocol):
         ...
 
 
-def plot(source: Drawable | Record | CaseResult | str | Path, folder: str | Path | None = None) -> dict[str, Figure]:
+def plot(
+    source: Drawable | Record | TrainResult | CaseResult | str | Path, folder: str | Path | None = None
+) -> dict[str, Figure]:
     """The figures of a result, or of the history file of a run, by name; also as NAME.png and NAME.svg in `folder`.
 
     Raises FileError for a file that cannot be read or written.
@@ -44,16 +47,26 @@ def plot(source: Drawable | Record | CaseResult | str | Path, folder: str | Path
     return drawn
 
 
-def _figures_of(source: Drawable | Record | CaseResult | str | Path) -> Figures:
+def _figures_of(source: Drawable | Record | TrainResult | CaseResult | str | Path) -> Figures:
+    from slosh_cli.results.train_result import TrainResult
     from slosh_cli.validation.case import CaseResult
 
     if isinstance(source, CaseResult):
         return case_figures(source)
+    if isinstance(source, TrainResult):
+        return _train_figures(source.history)
     if isinstance(source, str | Path):
-        from slosh_cli.results.hdf5 import read_history
+        from slosh_cli.results.hdf5 import is_train_history, read_history, read_train
 
-        return _run_figures(read_history(Path(source)))
+        path = Path(source)
+        return _train_figures(read_train(path)) if is_train_history(path) else _run_figures(read_history(path))
     return source.figures() if isinstance(source, Drawable) else _run_figures(source)
+
+
+def _train_figures(train: TrainHistory) -> Figures:
+    from slosh_cli.report.train_figures import train_figures
+
+    return train_figures(train)
 
 
 def _run_figures(record: Record) -> Figures:

@@ -1,4 +1,4 @@
-"""The files of a train's stop."""
+"""One stop of a train: its simulation, its files."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from slosh_cli.report import FORMATS, TRAIN_FIGURES
 
 if TYPE_CHECKING:
     from slosh_cli.results.train_result import TrainResult
+    from slosh_cli.scenario.train_file import TrainScenario
+    from slosh_cli.solver.run import Cancel, Progress
 
 _HISTORY: Final = "run.h5"
 _SUMMARY: Final = "summary.csv"
@@ -24,6 +26,16 @@ TRAIN_FILES: Final = (
     *(f"{name}.{suffix}" for name in TRAIN_FIGURES for suffix in FORMATS),
 )
 """Every file that a train's run may write, its history first."""
+
+
+def simulate_train(
+    train: TrainScenario | str | Path, *, progress: Progress | None = None, cancel: Cancel | None = None
+) -> TrainResult:
+    """Integrate one stop of a train, or of its file; arguments and errors are those of `simulate`."""
+    from slosh_cli.results.simulate import simulate_train as integrated
+    from slosh_cli.scenario.train_file import load_train
+
+    return integrated(load_train(train) if isinstance(train, str | Path) else train, progress=progress, cancel=cancel)
 
 
 def keep_train(result: TrainResult, folder: Path, keeping: Keeping, *, figures: bool = True) -> dict[str, Any]:

@@ -14,22 +14,23 @@ class _FileKind(StrEnum):
 
     SCENARIO = "scenario"
     STUDY = "study"
+    TRAIN = "train"
 
 
 def schema_command(
     kind: Annotated[
         _FileKind,
-        typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone) or `study`."),
+        typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone), `study` or `train`."),
     ] = _FileKind.SCENARIO,
 ) -> ExitCode:
-    """Print the JSON Schema of a scenario, or of a study.
+    """Print the JSON Schema of a scenario, a study or a train.
 
     An editor that knows it completes and checks files while they are written.
     """
-    if kind is _FileKind.STUDY:
-        from slosh_cli.study.study_schema import study_schema
+    if kind is not _FileKind.SCENARIO:
+        from slosh_cli.study.study_schema import study_schema, train_schema
 
-        say_json(study_schema())
+        say_json(study_schema() if kind is _FileKind.STUDY else train_schema())
         return ExitCode.DONE
     from slosh_cli.scenario import json_schema
 

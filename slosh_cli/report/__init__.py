@@ -6,5 +6,5 @@ FORMATS: Final = ("png", "svg")
 """Kinds of files that every figure is written as."""
 FIGURE_NAMES: Final = ("contact_forces", "speed_distance", "wheel_speed", "slosh", "brake", "line")
 """Every figure of a run, by the name of its files."""
-TRAIN_FIGURES: Final = ("coupling_forces", "coupling_extremes", "train_speed", "train_slosh")
+TRAIN_FIGURES: Final = ("coupling_forces", "coupling_extremes", "brake_wave", "train_speed", "train_slosh")
 """Every figure of a train's run."""

@@ -1,6 +1,7 @@
-"""Figures of a train: forces of its couplings over time and along it, speeds, slosh in every tank."""
+"""Figures of a train: forces of its couplings over time and along it, brake wave, speeds, slosh in every tank."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -8,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from slosh_cli.arrays import Matrix
+from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.report import FORMATS, TRAIN_FIGURES
 from slosh_cli.report.figures import FRONT, REAR
 from slosh_cli.report.saving import INK, MUTED, save, styled
@@ -17,6 +18,7 @@ from slosh_cli.results.train_result import TrainHistory
 _LINES: Final = ("-", (0, (6, 2)), (0, (6, 2, 1, 2)), (0, (1.5, 1.2)))
 _GREYS: Final = ("#08306b", "#4a98c9", "#8c2d04", "#fd8d3c")
 _MOST_COLUMNS: Final = 1000
+_APPLIED: Final = 0.95
 
 
 def draw_train(
@@ -26,19 +28,24 @@ def draw_train(
 
     Each file appears whole or not at all. Raises FileError when one cannot be written.
     """
-    drawn = {
-        "coupling_forces": _coupling_forces if train.couplings else None,
-        "coupling_extremes": _coupling_extremes if train.couplings else None,
-        "train_speed": _train_speed,
-        "train_slosh": _train_slosh if any(_sloshes(train)) else None,
-    }
     with styled():
         return [
             file
-            for name, draw in drawn.items()
-            if draw is not None and name in names
-            for file in save(draw(train), folder, name, formats)
+            for name, draw in train_figures(train).items()
+            if name in names
+            for file in save(draw(), folder, name, formats)
         ]
+
+
+def train_figures(train: TrainHistory) -> dict[str, Callable[[], Figure]]:
+    """What draws each figure that suits the train, by name."""
+    found: dict[str, Callable[[TrainHistory], Figure]] = {}
+    if train.couplings:
+        found |= {"coupling_forces": _coupling_forces, "coupling_extremes": _coupling_extremes}
+        found |= {"brake_wave": _brake_wave}
+    found |= {"train_speed": _train_speed}
+    found |= {"train_slosh": _train_slosh} if any(_sloshes(train)) else {}
+    return {name: partial(draw, train) for name, draw in found.items()}
 
 
 def _sloshes(train: TrainHistory) -> list[bool]:
@@ -50,10 +57,29 @@ def _picked(count: int) -> list[int]:
     return sorted({round(part * (count - 1)) for part in (0.0, 1 / 3, 2 / 3, 1.0)})
 
 
+def _title(train: TrainHistory, title: str) -> str:
+    return f"{title}: {train.name}, {len(train.vehicles)} vehicles"
+
+
+def _waterfall(axes: Any, train: TrainHistory, values: Sequence[Vector], front: float, colours: str) -> Any:
+    """Draw time against the place in the train, the front above; values of either sign in shades of their own. The
+    first of them begins at the place `front`."""
+    edges = np.arange(len(values) + 1) + front
+    every = max(len(train.time) // _MOST_COLUMNS, 1)
+    found: Matrix = np.array([one[::every] for one in values])
+    most, times = max(float(np.abs(found).max()), 1e-9), train.time[::every]
+    across = np.concatenate([times, times[-1:] + (train.time[-1] - times[-1]) + 1e-9])
+    drawn = axes.pcolormesh(across, edges, found, cmap=colours, vmin=-most, vmax=most, rasterized=True)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_ylim(len(train.vehicles) + 0.5, 0.5)
+    axes.grid(visible=False)
+    return drawn
+
+
 def _axes(train: TrainHistory, title: str, across: str, up: str) -> tuple[Figure, Any]:
     figure = Figure(figsize=(9.6, 5.4), layout="constrained")
     axes = figure.add_subplot()
-    axes.set_title(f"{title}: {train.name}, {len(train.vehicles)} vehicles", loc="left", color=INK)
+    axes.set_title(_title(train, title), loc="left", color=INK)
     axes.set_xlabel(across)
     axes.set_ylabel(up)
     return figure, axes
@@ -71,17 +97,44 @@ def _coupling_forces(train: TrainHistory) -> Figure:
 
 
 def _coupling_extremes(train: TrainHistory) -> Figure:
-    """Largest compression and tension of every coupling, along the train."""
-    figure, axes = _axes(train, "Largest coupling forces", "coupling, from the front", "force / kN")
+    """Largest compression and tension of every coupling along the train, and when they come."""
+    figure = Figure(figsize=(9.6, 7.0), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    above.set_title(_title(train, "Largest coupling forces"), loc="left", color=INK)
+    above.set_ylabel("force / kN")
+    below.set_ylabel("instant / s")
+    below.set_xlabel("coupling, from the front")
     places = np.arange(1, len(train.couplings) + 1)
-    push = [one.facts["max_compression_N"] / 1e3 for one in train.couplings]
-    pull = [one.facts["max_tension_N"] / 1e3 for one in train.couplings]
-    axes.plot(places, push, marker="o", label="compression", **FRONT)
-    axes.plot(places, pull, marker="s", label="tension", **REAR)
-    axes.set_ylim(bottom=0.0)
-    axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.legend()
+    for way, marker, look in (("compression", "o", FRONT), ("tension", "s", REAR)):
+        forces = [one.facts[f"max_{way}_N"] / 1e3 for one in train.couplings]
+        above.plot(places, forces, marker=marker, label=way, **look)
+        instants = [one.facts.get(f"max_{way}_s", np.nan) for one in train.couplings]
+        below.plot(places, instants, marker=marker, label=way, **look)
+    above.set_ylim(bottom=0.0)
+    below.set_ylim(bottom=0.0)
+    below.xaxis.get_major_locator().set_params(integer=True)
+    above.legend()
     return figure
+
+
+def _brake_wave(train: TrainHistory) -> Figure:
+    """Forces of all couplings, time against the place in the train, with the way of the brakes along it."""
+    figure, axes = _axes(train, "Brake wave and coupling forces", "time / s", "vehicle, from the front")
+    force = [one.channels["force"] / 1e3 for one in train.couplings]
+    drawn = _waterfall(axes, train, force, 1.0, "RdBu_r")
+    vehicles = np.arange(1, len(train.vehicles) + 1)
+    axes.plot([one.facts["onset_s"] for one in train.vehicles], vehicles, color=INK, label="brakes set in")
+    full = [_first_time(train, one.channels["brake_application"], _APPLIED) for one in train.vehicles]
+    axes.plot(full, vehicles, color=INK, linestyle=_LINES[1], label=f"{_APPLIED:.0%} of the full brake")
+    axes.legend(loc="lower right")
+    figure.colorbar(drawn, ax=axes, label="force / kN, compression positive")
+    return figure
+
+
+def _first_time(train: TrainHistory, values: Vector, level: float) -> float:
+    """When a channel first reaches a level, s; NaN where it never does."""
+    reached = np.flatnonzero(values >= level)
+    return float(train.time[reached[0]]) if reached.size else np.nan
 
 
 def _train_speed(train: TrainHistory) -> Figure:
@@ -99,15 +152,7 @@ def _train_speed(train: TrainHistory) -> Figure:
 def _train_slosh(train: TrainHistory) -> Figure:
     """Rise of the surface at the front wall of every tank: time against the place in the train."""
     figure, axes = _axes(train, "Surface at the front walls", "time / s", "vehicle, from the front")
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    every = max(len(train.time) // _MOST_COLUMNS, 1)
-    rise: Matrix = np.array([one.channels["surface_front"][::every] for one in train.vehicles])
-    most = max(float(np.abs(rise).max()), 1e-9)
-    edges = np.arange(len(train.vehicles) + 1) + 0.5
-    times = train.time[::every]
-    across = np.concatenate([times, times[-1:] + (train.time[-1] - times[-1]) + 1e-9])
-    drawn = axes.pcolormesh(across, edges, rise, cmap="PuOr", vmin=-most, vmax=most, rasterized=True)
-    axes.invert_yaxis()
-    axes.grid(visible=False)
+    rise = [one.channels["surface_front"] for one in train.vehicles]
+    drawn = _waterfall(axes, train, rise, 0.5, "PuOr")
     figure.colorbar(drawn, ax=axes, label="rise / m")
     return figure

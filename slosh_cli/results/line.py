@@ -32,13 +32,14 @@ def line_channels(scenario: Scenario, vehicle: Vehicle, position: Vector) -> dic
     """
     channels: dict[str, Array] = {}
     places, gradients = np.array(scenario.track.gradient_points).T
+    on_line = position - vehicle.line.behind
     if gradients.any():
-        along = np.unique(np.concatenate([places, position, [0.0]]))
+        along = np.unique(np.concatenate([places, on_line, [0.0]]))
         gradient = np.interp(along, places, gradients)
         climbed = np.concatenate([[0.0], np.cumsum(0.5 * (gradient[1:] + gradient[:-1]) * np.diff(along))])
         climbed -= np.interp(0.0, along, climbed)
-        channels["line_gradient"] = np.interp(position, places, gradients)
-        channels["line_height"] = np.interp(position, along, climbed)
+        channels["line_gradient"] = np.interp(on_line, places, gradients)
+        channels["line_height"] = np.interp(on_line, along, climbed)
     if scenario.track.unevenness is not None:
         channels["rail_level"] = vehicle.contact.surface.levels(position)
     return channels
@@ -63,7 +64,10 @@ def descent_checks(scenario: Scenario) -> tuple[Check, ...]:
 
 
 def check_covered(scenario: Scenario, position: float) -> None:
-    """Refuse a run that left its measured rail behind when it had come to `position` (m); raises PhysicsError."""
+    """Refuse a run that left its measured rail behind when it had come to `position` (m) of the line.
+
+    Raises PhysicsError.
+    """
     unevenness = scenario.track.unevenness
     if unevenness is None or unevenness.file is None:
         return

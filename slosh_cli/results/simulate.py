@@ -149,7 +149,7 @@ def _of_vehicle(scenario: Scenario, stop: ReadyStop, run: Run) -> VehicleResult:
     """The answers of one vehicle of a train, its histories made when they are asked for."""
     vehicle, static_loads = stop.vehicle, _per_wheel(stop.static_loads)
     place, account, advice = float(vehicle.points[START].q[POSITION]), vehicle.account, _recommended(scenario)
-    check_covered(scenario, place)
+    check_covered(scenario, place - vehicle.line.behind)
     wheels = _of_wheels(scenario, vehicle, static_loads)
     return VehicleResult(
         scenario=scenario,

@@ -68,8 +68,8 @@ class CouplingResult(Answers):
     max_tension_N: float = computed("N", "largest tensile force", shown=_TOLD)
     max_compression_m: float = computed("m", "largest compression", shown=_TOLD)
     max_tension_m: float = computed("m", "largest extension", shown=_TOLD)
-    max_compression_s: float = computed("s", "when the compressive force was largest", shown=Shown.SUMMARY)
-    max_tension_s: float = computed("s", "when the tensile force was largest", shown=Shown.SUMMARY)
+    max_compression_s: float = computed("s", "when the compressive force was largest", shown=~Shown.JSON)
+    max_tension_s: float = computed("s", "when the tensile force was largest", shown=~Shown.JSON)
     energy_taken_J: float = computed("J", "work that the coupling took, integral of force and rate", shown=_TOLD)
     # fmt: on
     force: Vector

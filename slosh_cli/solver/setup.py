@@ -154,6 +154,7 @@ def _line(scenario: Scenario, behind: float) -> Line:
         resistance=HALF * np.array([resistance.constant, resistance.linear, resistance.quadratic]),
         pull=float(pulls[0]),
         places=points[:, 0] + behind,
+        behind=behind,
         pulls=pulls,
         standing=0.0,
     )

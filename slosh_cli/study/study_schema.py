@@ -1,4 +1,4 @@
-"""The JSON Schema of a study file, for editors."""
+"""The JSON Schemas of files that speak of a scenario's keys, studies and trains, for editors."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.tree import Spot, spot_of
 from slosh_cli.scenario.words import Choice
 from slosh_cli.study.plan import LIQUID
 from slosh_cli.study.study_file import StudyKeys
 
 _ITEM = "0"
+_NOT_VARIED = ("format", "vehicles")
+"""Keys of a train that no study varies."""
 
 
 def study_schema() -> dict[str, Any]:
@@ -26,16 +29,32 @@ def study_schema() -> dict[str, Any]:
     }
     values = properties["vary"].pop("additionalProperties")
     keys = {key: (said, spot) for key, said, spot in _keys(Spot(part=Scenario))}
-    specs = {key: values | ({"description": said} if said else {}) for key, (said, _) in keys.items()}
-    properties["vary"] |= {
-        "minProperties": 1,
+    varied = _of_keys(values)
+    of_trains = {r"^(?:all|vehicles[.][1-9][0-9]*)[.].+$": values}
+    own = {key: values for key, _, _ in _keys(Spot(part=TrainFile)) if key.partition(".")[0] not in _NOT_VARIED}
+    varied["properties"] = own | varied["properties"]
+    varied["patternProperties"] |= of_trains
+    properties["vary"] |= {"minProperties": 1} | varied
+    properties["liquid"] |= _models(keys[LIQUID][1])
+    del schema["description"]
+    return {**schema, "title": "Study", "properties": properties, "required": ["base", "vary"]}
+
+
+def train_schema() -> dict[str, Any]:
+    """JSON Schema of a train file; the keys that a vehicle may `set` are those of a scenario, with what they mean."""
+    schema: dict[str, Any] = TrainFile.editor_schema()
+    schema["$defs"]["TrainEntry"]["properties"]["set"] |= _of_keys({})
+    return schema | {"title": "Train"}
+
+
+def _of_keys(values: dict[str, Any]) -> dict[str, Any]:
+    """What a mapping of a scenario's key paths to such values may hold, each key with what it means."""
+    specs = {key: values | ({"description": said} if said else {}) for key, said, _ in _keys(Spot(part=Scenario))}
+    return {
         "properties": {key: spec for key, spec in specs.items() if _ITEM not in key.split(".")},
         "patternProperties": {_pattern(key): spec for key, spec in specs.items() if _ITEM in key.split(".")},
         "additionalProperties": False,
     }
-    properties["liquid"] |= _models(keys[LIQUID][1])
-    del schema["description"]
-    return {**schema, "title": "Study", "properties": properties, "required": ["base", "vary"]}
 
 
 def _keys(spot: Spot, above: str = "", field: FieldInfo | None = None) -> Iterator[tuple[str, str | None, Spot]]:

@@ -16,7 +16,8 @@ _OVERSHOOT = 0.5
 class Line(Block):
     """The running resistance `a + b V + c V^2` of a half vehicle: `resistance` (3,) in N, N s/m and N s^2/m^2; and the
     `pull` (m/s^2) of gravity along the track, forward, on every mass. Where the gradient changes, `pulls` (n,) are
-    those at the `places` (n,) m of the vehicle, linear between them (theory section 14).
+    those at the `places` (n,) m of the vehicle, linear between them (theory section 14). The vehicle starts `behind`
+    (m) the one whose places are those of the line.
 
     A vehicle that may be pushed back opposes that too; below the speed `standing` (m/s) its constant resistance fades.
     It is zero for one that only runs forward.
@@ -25,6 +26,7 @@ class Line(Block):
     resistance: Vector
     pull: float
     places: Vector
+    behind: float
     pulls: Vector
     standing: float
 

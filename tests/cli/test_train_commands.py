@@ -64,7 +64,8 @@ def test_a_run_tells_of_every_vehicle_and_coupling(slosh: Slosh, file: Path) -> 
     assert list(pd.read_csv("kept/couplings.csv")["coupling"]) == [1, 2]
     assert pd.read_csv("kept/summary.csv")["v0_km_h"][0] == 20.0
     assert Path("kept/coupling_forces.png").exists()
-    assert Path("kept/coupling_extremes.svg").exists()
+    for name in ("coupling_forces", "coupling_extremes", "brake_wave", "train_speed"):
+        assert Path(f"kept/{name}.svg").exists()
     redrawn = slosh("plot", "kept/run.h5", "-o", "again")
     assert redrawn.code == ExitCode.DONE
     assert Path("again/train_speed.png").exists()

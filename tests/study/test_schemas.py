@@ -14,9 +14,10 @@ from malformed_case import BASE, edited
 
 from slosh_cli.errors import ScenarioError, SloshError
 from slosh_cli.scenario import json_schema, load_any_scenario, packaged_scenarios
+from slosh_cli.scenario.packaged import packaged_trains
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.build import Wishes, build
-from slosh_cli.study.study_schema import study_schema
+from slosh_cli.study.study_schema import study_schema, train_schema
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -36,7 +37,7 @@ def faults(validator: Any, text: str) -> list[str]:
 
 
 def test_the_schemas_are_schemas() -> None:
-    for schema in (json_schema(), study_schema()):
+    for schema in (json_schema(), study_schema(), train_schema()):
         jsonschema.Draft202012Validator.check_schema(schema)
 
 
@@ -176,3 +177,52 @@ def test_what_a_study_may_not_say_is_marked(name: str, studies: Any, tmp_path: P
 def test_the_error_of_a_study_is_that_of_a_scenario(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"study\.yaml:2: .*is not a key of a tank"):
         study_of(tmp_path, BAD["unknown path"])
+
+
+@pytest.fixture(scope="module")
+def trains() -> Any:
+    return jsonschema.Draft202012Validator(train_schema())
+
+
+@pytest.mark.parametrize("name", packaged_trains())
+def test_every_packaged_train_is_valid(name: str, trains: Any) -> None:
+    assert faults(trains, packaged_trains()[name].read_text(encoding="utf-8")) == []
+
+
+SMALL = """\
+format: 1
+name: small
+vehicles:
+  - {scenario: tank-wagon, set: {tank.fill: 0.9, track: rigid}}
+  - {scenario: own.yaml, count: 3}
+coupling: screw
+track: rigid
+braking: {initial_speed: 60 km/h, onset: 0.5 s}
+"""
+BAD_TRAINS = {
+    "a count of 0": ("count: 3", "count: 0"),
+    "an unknown key of a vehicle": ("tank.fill: 0.9", "tank.fil: 0.9"),
+    "an unknown coupling": ("coupling: screw", "coupling: rope"),
+    "an unknown word for the track": ("\ntrack: rigid", "\ntrack: soft"),
+    "no vehicles": ("vehicles:", "x-vehicles:"),
+    "a key that a train has not": ("coupling: screw", "couplings: screw"),
+    "no onset": (", onset: 0.5 s", ""),
+}  # fmt: skip
+
+
+def test_a_small_train_is_valid(trains: Any) -> None:
+    assert faults(trains, SMALL) == []
+
+
+@pytest.mark.parametrize("name", BAD_TRAINS)
+def test_what_a_train_may_not_say_is_marked(name: str, trains: Any) -> None:
+    before, after = BAD_TRAINS[name]
+    assert before in SMALL
+    assert faults(trains, SMALL.replace(before, after))
+
+
+def test_a_study_of_a_train_varies_its_keys_and_those_of_its_vehicles(studies: Any) -> None:
+    keys = ("all.tank.fill", "vehicles.3.braking.application", "brake_pipe.speed", "coupling", "braking.initial_speed")
+    for key in keys:
+        assert faults(studies, f"base: small.yaml\nvary: {{{key}: [1, 2]}}") == []
+    assert faults(studies, "base: small.yaml\nvary: {vehicles.0.tank.fill: [0.1]}")
