@@ -19,20 +19,21 @@ class _FileKind(StrEnum):
 
 def schema_command(
     kind: Annotated[
-        _FileKind,
-        typer.Argument(metavar="KIND", help="`scenario` (of a stop, or of a tank alone), `study` or `train`."),
-    ] = _FileKind.SCENARIO,
+        _FileKind | None,
+        typer.Argument(
+            metavar="[KIND]",
+            help="`scenario` (of a stop, or of a tank alone), `train` or `study`. Default: scenario or train.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> ExitCode:
     """Print the JSON Schema of a scenario, a study or a train.
 
     An editor that knows it completes and checks files while they are written.
     """
-    if kind is not _FileKind.SCENARIO:
-        from slosh_cli.study.study_schema import study_schema, train_schema
-
-        say_json(study_schema() if kind is _FileKind.STUDY else train_schema())
-        return ExitCode.DONE
     from slosh_cli.scenario import json_schema
+    from slosh_cli.study.study_schema import every_schema, study_schema, train_schema
 
-    say_json(json_schema())
+    made = {_FileKind.SCENARIO: json_schema, _FileKind.STUDY: study_schema, _FileKind.TRAIN: train_schema}
+    say_json(made[kind]() if kind else every_schema())
     return ExitCode.DONE

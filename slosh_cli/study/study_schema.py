@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from slosh_cli.scenario import Scenario
+from slosh_cli.scenario import Scenario, json_schema
 from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.tree import Spot, spot_of
 from slosh_cli.scenario.words import Choice
@@ -45,6 +45,18 @@ def train_schema() -> dict[str, Any]:
     schema: dict[str, Any] = TrainFile.editor_schema()
     schema["$defs"]["TrainEntry"]["properties"]["set"] |= _of_keys({})
     return schema | {"title": "Train"}
+
+
+def every_schema() -> dict[str, Any]:
+    """JSON Schema of every file that `slosh run` and `slosh check` take: a wagon, a tank alone or a train."""
+    wagon, train = json_schema(), train_schema()
+    definitions = wagon.pop("$defs") | train.pop("$defs")
+    dialect = {"$schema": wagon.pop("$schema")}
+    del train["$schema"]
+    keys = train["properties"] | wagon["properties"]
+    names = {key: {word: entry[word] for word in ("description",) if word in entry} for key, entry in keys.items()}
+    chosen = {"if": {"required": ["vehicles"]}, "then": train, "else": wagon}
+    return {**dialect, "title": "Scenario or train", "$defs": definitions, "properties": names, **chosen}
 
 
 def _of_keys(values: dict[str, Any]) -> dict[str, Any]:

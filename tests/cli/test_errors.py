@@ -32,7 +32,7 @@ USAGE = {
     "no such option": (["run", "x.yaml", "--quick"], "No such option: --quick"),
     "argument missing": (["run"], "Missing argument 'SCENARIO'"),
     "value missing": (["run", "x.yaml", "--set"], "requires an argument"),
-    "schema of nothing known": (["schema", "train"], "'train' is not one of 'scenario', 'study'"),
+    "schema of nothing known": (["schema", "tank"], "'tank' is not one of 'scenario', 'study', 'train'"),
     "one argument too many": (["schema", "scenario", "now"], "unexpected extra argument"),
 }
 

@@ -17,7 +17,7 @@ from slosh_cli.scenario import json_schema, load_any_scenario, packaged_scenario
 from slosh_cli.scenario.packaged import packaged_trains
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.build import Wishes, build
-from slosh_cli.study.study_schema import study_schema, train_schema
+from slosh_cli.study.study_schema import every_schema, study_schema, train_schema
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -37,7 +37,7 @@ def faults(validator: Any, text: str) -> list[str]:
 
 
 def test_the_schemas_are_schemas() -> None:
-    for schema in (json_schema(), study_schema(), train_schema()):
+    for schema in (json_schema(), study_schema(), train_schema(), every_schema()):
         jsonschema.Draft202012Validator.check_schema(schema)
 
 
@@ -187,6 +187,14 @@ def trains() -> Any:
 @pytest.mark.parametrize("name", packaged_trains())
 def test_every_packaged_train_is_valid(name: str, trains: Any) -> None:
     assert faults(trains, packaged_trains()[name].read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("name", [*packaged_scenarios(), *packaged_trains()])
+def test_one_schema_knows_all_that_is_packaged(name: str) -> None:
+    every = jsonschema.Draft202012Validator(every_schema())
+    text = (packaged_scenarios() | packaged_trains())[name].read_text(encoding="utf-8")
+    assert faults(every, text) == []
+    assert faults(every, text.replace("name:", "nam:"))
 
 
 SMALL = """\
