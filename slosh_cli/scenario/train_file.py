@@ -252,8 +252,9 @@ def _at_its_place(
     def moved(problem: Problem) -> Problem:
         if problem.override in written:
             return replace(problem, override=written[problem.override])
-        place = ("vehicles", number, "set", problem.override.removeprefix("--set "))
-        return replace(problem, line=document.origin(place).line, key=".".join(map(str, place)), override="")
+        name = problem.override.removeprefix("--set ")
+        place, inner = ("vehicles", number, "set", name), problem.key if problem.key.startswith(f"{name}.") else name
+        return replace(problem, line=document.origin(place).line, key=f"vehicles.{number}.set.{inner}", override="")
 
     own = [problem for problem in error.problems if not problem.override]
     return error if own else ScenarioError(str(path), [moved(problem) for problem in error.problems])

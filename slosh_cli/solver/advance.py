@@ -24,6 +24,8 @@ _MOST_STALLED = 200
 _GROWTH = 4.0
 _INTEGRAL, _PROPORTIONAL = 0.7 / 3.0, 0.3 / 3.0
 """Exponents of the step control for a local error of order 3: K. Gustafsson, ACM TOMS 17 (1991) 533-554."""
+_BEGUN = 1e-7
+"""Less of an application than this is rounding of its onset."""
 _RESTART_STEP = 1e-3
 """First step after a discontinuity, s; error control takes it from there."""
 
@@ -130,7 +132,7 @@ def _full_slowing(vehicle, time, step):
     growth by A: with `A h` within the bound it stays below the tolerance, with `a h` of the instant it would not.
     """
     slowing, applied = abs(vehicle.points[START].a[0]), vehicle.brake.application(time)
-    if 0.0 < applied < vehicle.brake.application(time + step):
+    if _BEGUN < applied < vehicle.brake.application(time + step):
         return slowing / applied
     return slowing
 
@@ -265,7 +267,8 @@ def _choose(train, rows):
         return RUNNING
     if train.time >= train.control.time_limit:
         return TIME_LIMIT
-    if train.time >= _next_break(train):
+    if train.time >= _next_break(train) - SHORTEST_STEP:  # several vehicles break at once but for rounding
+        train.time = max(train.time, _next_break(train))
         if _pass_breaks(train):
             _note_event(train)
         return RUNNING

@@ -134,6 +134,6 @@ def let_go(vehicle, time):
 
 @inner_kernel
 def _hold_or_turn(vehicle, wheel, time):
-    """Lock a wheel that is at rest at `time` (s) where the brake holds it; else the rail turns it its way."""
+    """Lock a wheel that is at rest at `time` (s) where the brake holds it; else the rail turns it the vehicle's way."""
     vehicle.locked[wheel] = wheel_holds(vehicle, wheel, time)
-    vehicle.turning[wheel] = -1.0 if vehicle.points[0].creep[wheel] < 0.0 else 1.0
+    vehicle.turning[wheel] = -1.0 if vehicle.points[0].v[0] < 0.0 else 1.0

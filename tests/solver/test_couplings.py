@@ -262,3 +262,32 @@ def test_half_the_tolerance_leaves_the_largest_force(shipped, name):
         assert (train.couplings.taken > -1e-3).all()
         largest.append(train.couplings.largest.max())
     assert largest[0] == pytest.approx(largest[1], rel=2e-3)
+
+
+def test_wheels_of_a_vehicle_that_is_pulled_back_turn_back(shipped):
+    """The light vehicle stops first, and the soft coupling takes it back; a step or two for each of its wheels."""
+    each = [
+        shipped(
+            "paper_80_solid", "braking.initial_speed=30 km/h", "output.interval=1 s", f"braking.torque={torque} kN m",
+            f"tank.fill={fill}", "tank.coefficients=computed",
+        )
+        for torque, fill in ((10, 0.1), (3, 0.9))
+    ]  # fmt: skip
+    train = integrate(train_problem(each, linear(1.4e5))[0]).train
+    assert train.vehicles[1].points[START].v[0] < -0.1
+    assert (train.vehicles[1].turning == -1.0).all()
+    assert train.rejected < 200
+
+
+def test_brakes_of_several_vehicles_may_break_at_once_but_for_rounding(shipped):
+    """0.3 s and 15 samples of 50 ms are not 1.05 s to the last bit."""
+    protected = "braking.slide_protection={period: 50 ms}"
+    each = [
+        shipped(
+            "paper_80_solid", "output.interval=1 s", "braking.stop_speed=18 m/s", f"braking.onset={onset!r} s", *more
+        )
+        for onset, more in ((0.3, (protected,)), (1.05, ("braking.application={form: linear, time: 3 s}",)))
+    ]
+    run = integrate(train_problem(each, linear(1e6))[0])
+    assert run.outcome == loop.STOPPED
+    assert run.train.steps < 1000
