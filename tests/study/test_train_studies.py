@@ -190,6 +190,30 @@ def test_a_study_may_be_interrupted_and_one_of_another_wagon_computes_anew(file:
     assert sweep(file, VARY, folder=parts).reused == 0
 
 
+def test_a_study_that_is_killed_loses_nothing_and_its_table_is_that_of_an_uninterrupted_one(
+    file: Path, tmp_path: Path
+) -> None:
+    journal = tmp_path / "killed" / "journal.sqlite"
+    arguments = ["sweep", file, "--vary", "all.tank.fill=0.41:0.65:0.02", "--v0", "5,6", "--json", "--jobs", 2]
+    process = start_slosh(tmp_path, *arguments, "-o", "killed")
+    until = time.monotonic() + 120.0
+    while count(journal) < 4 and time.monotonic() < until and process.poll() is None:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    before = journal_rows(journal)
+    assert 4 <= len(before) < 26
+    code, out, err = run_slosh(tmp_path, *arguments, "-o", "killed")
+    assert code == 0, err
+    assert json.loads(out)["reused"] == len(before)
+    assert before.items() <= journal_rows(journal).items()
+    vary = {"all.tank.fill": "0.41:0.65:0.02", "braking.initial_speed": "5,6 km/h"}
+    sweep(file, vary, folder=tmp_path / "whole", threads=1)
+    tables = [(tmp_path / name / "braking_distance.csv").read_bytes() for name in ("killed", "whole")]
+    assert tables[0] == tables[1]
+    assert len(tables[0].splitlines()) == 27
+
+
 def test_histories_of_a_study_are_those_of_trains(file: Path, tmp_path: Path) -> None:
     found = sweep(file, {"coupling": "screw"}, folder=tmp_path / "kept", histories=True)
     history = read_train(tmp_path / "kept" / found.rows[0]["history"])
