@@ -178,14 +178,14 @@ def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) ->
 
 def _scale(axes: Axes, panel: StopsPanel) -> None:
     """A logarithmic axis where distances differ a lot: on it, a ratio has the same length everywhere."""
-    found = [mark.value for marks in panel.curves.values() for mark in marks if mark.value]
+    found = [mark.value for marks in panel.curves.values() for mark in marks if mark.value is not None]
     if not found:
         axes.text(0.5, 0.5, "no stop has an answer", transform=axes.transAxes, ha="center", color=MUTED)
         axes.set_yticks([])
         return
     low, high = min(found), max(found)
-    if high / low < 1.6:
-        span = max(high - low, 0.02 * high)
+    if high < 1.6 * low or low <= 0.0:  # without forces there is no ratio
+        span = max(high - low, 0.02 * high) or 1.0
         axes.set_ylim(low - 0.25 * span, high + 0.25 * span)
         return
     axes.set_yscale("log")

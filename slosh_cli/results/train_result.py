@@ -115,6 +115,12 @@ class TrainResult(Answers):
     tension_at: int = derived(
         "1", "coupling with the largest tensile force, counted from the front", shown=~Shown.JSON,
         of=lambda train: _place_of(train.couplings, "max_tension_N"))
+    max_compression_s: float | None = derived(
+        "s", "when the largest compressive force of any coupling acts", shown=~Shown.JSON,
+        of=lambda train: train.couplings[train.compression_at - 1].max_compression_s if train.couplings else None)
+    max_tension_s: float | None = derived(
+        "s", "when the largest tensile force of any coupling acts", shown=~Shown.JSON,
+        of=lambda train: train.couplings[train.tension_at - 1].max_tension_s if train.couplings else None)
     max_wheel_unloading: float = derived(
         "1", "largest 1 - N/N0 of any wheel of any vehicle", Place.WHEELS, shown=~Shown.JSON,
         of=lambda train: max(one.max_wheel_unloading for one in train.vehicles))

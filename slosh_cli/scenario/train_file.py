@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -50,7 +51,10 @@ class TrainScenario:
         return "---\n".join([scenario_to_yaml(self.file), *kinds])
 
     def with_(self, overrides: Mapping[str, Any]) -> TrainScenario:
-        """A copy with other values, by the keys of `load_train`; values and errors are those of `Scenario.with_`."""
+        """A copy with other values, by the keys of `load_train`; values and errors are those of `Scenario.with_`.
+
+        What is said of one vehicle holds there, whatever is said of all.
+        """
         wishes = [wish for key, value in overrides.items() if (wish := _wish(key, value, key))]
         asked = {wish.written for wish in wishes}
         rest = {key: value for key, value in overrides.items() if key not in asked}
@@ -66,7 +70,7 @@ class TrainScenario:
         found: list[Scenario] = []
         made: dict[tuple[int, tuple[str, ...]], Scenario] = {}
         for place, scenario in enumerate(self.own, 1):
-            mine = [wish for wish in wishes if wish.place in (None, place)]
+            mine = _of_vehicle(wishes, place)
             kind = id(scenario), tuple(wish.written for wish in mine)
             if kind not in made:
                 made[kind] = _changed(scenario, mine)
@@ -95,7 +99,7 @@ def _wish(key: str, value: Any, written: str) -> _Wish | None:
     place, _, inner = rest.partition(".")
     if first == _EVERY and rest:
         return _Wish(None, _in_full(rest, value), value, written)
-    if first == "vehicles" and place.isdecimal() and inner:
+    if first == "vehicles" and re.fullmatch("0|[1-9][0-9]*", place) and inner:  # one way to write a number, one vehicle
         return _Wish(int(place), _in_full(inner, value), value, written)
     return None
 
@@ -103,6 +107,11 @@ def _wish(key: str, value: Any, written: str) -> _Wish | None:
 def _in_full(key: str, value: Any) -> str:
     """The key that a vehicle's `track: rigid` is short for; any other key as it is."""
     return TRACK_MODEL if key == "track" and isinstance(value, str) and value.strip() == "rigid" else key
+
+
+def _of_vehicle(wishes: Sequence[_Wish], place: int) -> list[_Wish]:
+    """What is asked of the vehicle at a `place`: what is said of it alone comes last, so that it holds."""
+    return [one for of in (None, place) for one in wishes if one.place == of]
 
 
 def _changed(scenario: Scenario, wishes: Sequence[_Wish]) -> Scenario:
@@ -135,7 +144,8 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
     """Read a train and the scenarios of its vehicles.
 
     `overrides` are texts ``all.KEY=VALUE`` for every vehicle, ``vehicles.N.KEY=VALUE`` for the N-th from the front, or
-    ``KEY=VALUE`` for a key of the train's file. Raises ScenarioError, which names the file that is wrong.
+    ``KEY=VALUE`` for a key of the train's file. What is said of one vehicle holds there, whatever is said of all.
+    Raises ScenarioError, which names the file that is wrong.
     """
     path = Path(path)
     own, wishes = _sorted(overrides)
@@ -150,7 +160,7 @@ def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario
     for number, entry in enumerate(file.vehicles):
         source = _source(document, path, number, entry)
         for place in range(len(found) + 1, len(found) + 1 + entry.count) if source else ():
-            mine = [wish for wish in wishes if wish.place in (None, place)]
+            mine = _of_vehicle(wishes, place)
             given = {_in_full(key, value): value for key, value in entry.set.items()}
             settings = tuple(f"{key}={json.dumps(value)}" for key, value in given.items())
             try:

@@ -69,7 +69,8 @@ def grid(
 
 def _completed(wishes: Wishes, file: str, name: str, base: Scenario | TrainScenario, axes: tuple[Axis, ...]) -> Study:
     if isinstance(base, TrainScenario):
-        return TrainStudy(name, base, _train_axes(wishes, file, axes), file, wishes.histories)
+        asked = _train_axes(wishes, file, axes)
+        return TrainStudy(name, base, asked, file, wishes.histories, _kept(wishes.overrides, asked))
     axes = _with_axes(axes, _braking_axes(wishes, base, axes))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
     return WagonStudy(name, base, axes, file, wishes.histories)
@@ -81,12 +82,28 @@ def _train_axes(wishes: Wishes, file: str, axes: tuple[Axis, ...]) -> tuple[Axis
         if given is not None or any(axis.key == key for axis in axes):
             fix = f"write `--vary all.{key}=...`, or `vehicles.N.{key}` for the N-th from the front"
             raise UsageError(f"{file} is a train, whose vehicles have their own {key}; {fix}", option)
+    _check_asked_once(wishes)
     if wishes.speeds is not None:
         axes = _with_axes(axes, [_axis(SPEED, wishes.speeds, "--v0", "km/h")])
     if not axes:
         fix = "write `--v0 60,80`, `--vary all.tank.fill=0.5,0.9` or `--vary coupling=screw,automatic`, say"
         raise UsageError(f"a study of a train needs something that varies; {fix}", file)
     return axes
+
+
+def _kept(overrides: Sequence[str], axes: Iterable[Axis]) -> dict[str, str]:
+    """What was set of single vehicles, which holds in every stop that changes all of them."""
+    if not any(axis.key.startswith("all.") for axis in axes):
+        return {}
+    pairs = (text.partition("=") for text in overrides)
+    return {key.strip(): value for key, _, value in pairs if key.strip().startswith("vehicles.")}
+
+
+def _check_asked_once(wishes: Wishes) -> None:
+    """Raise UsageError where speeds or torques are asked for by their option and by --vary."""
+    for option, spec, key in (("--v0", wishes.speeds, SPEED), ("--torque", wishes.torques, TORQUE)):
+        if spec is not None and any(text.partition("=")[0].strip() == key for text in wishes.vary):
+            raise UsageError(f"{option} and --vary {key} ask for the same; leave one of them out", option)
 
 
 def paper_wagon() -> Scenario:
@@ -125,9 +142,7 @@ def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis]) -> list[
     varied = {axis.key for axis in axes}
     rivals = {f"braking.{key}" for key in Braking.rivals("torque")}
     others = base.braking.torque is None or any(".".join(key.split(".")[:2]) in rivals for key in varied)
-    for option, spec, key in (("--v0", wishes.speeds, SPEED), ("--torque", wishes.torques, TORQUE)):
-        if spec is not None and any(text.partition("=")[0].strip() == key for text in wishes.vary):
-            raise UsageError(f"{option} and --vary {key} ask for the same; leave one of them out", option)
+    _check_asked_once(wishes)
     figure = (wishes.speeds, wishes.torques) != (None, None) or not axes
     speeds = _SPEEDS if wishes.speeds is None and figure and SPEED not in varied else wishes.speeds
     completes = wishes.torques is None and figure and TORQUE not in varied and not others

@@ -12,7 +12,7 @@ _SAMPLES: Final = 3
 _PATIENCE: Final = 2.0
 """Seconds a tried stop may take; a longer one is judged by how far it came."""
 _TYPICAL: Final = 0.15
-"""What a stop of the paper's wagon takes, s of one thread, for want of anything better."""
+"""What a stop of the paper's wagon takes, s of one thread, for want of anything better; of a train, each vehicle's."""
 
 
 class _Deadline:
@@ -37,7 +37,7 @@ def seconds_per_stop(study: "Study", planned: "Plan", journal: "Journal | None")
     from slosh_cli.compiled import solver_is_cached
 
     if not planned.open or not all(solver_is_cached(model) for model in study.liquids):
-        return _TYPICAL
+        return _TYPICAL * study.vehicles
     count = min(_SAMPLES, len(planned.open))
     chosen = [planned.open[(2 * k + 1) * len(planned.open) // (2 * count)] for k in range(count)]
     _try(study, chosen[0])  # loads the kernels

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from dataclasses import replace as copy_of
 from itertools import product
 from typing import Any, ClassVar, Final
@@ -48,7 +48,8 @@ class Stop:
 class Study:
     """A grid of stops of `base`; the last of `axes` varies fastest. `WagonStudy` and `TrainStudy` know what of.
 
-    `file` is what messages name: the study file or the scenario. `answers` is the class of a stop's answers.
+    `file` is what messages name: the study file or the scenario. `answers` is the class of a stop's answers;
+    `kept` are key paths and values of every stop, beside those of the axes.
     """
 
     answers: ClassVar[type[Answers]]
@@ -58,6 +59,7 @@ class Study:
     axes: tuple[Axis, ...]
     file: str
     histories: bool = False
+    kept: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -82,7 +84,7 @@ class Study:
 
         Raises ScenarioError where its combination of values makes no sound scenario.
         """
-        values: dict[str, Any] = dict(self.values(index))
+        values: dict[str, Any] = {**self.kept, **self.values(index)}
         if self.histories:
             values["description"] = _describe(self.values(index))
         else:
@@ -93,6 +95,11 @@ class Study:
             axes = {axis.key: axis for axis in self.axes}
             raise type(error)(self.file, [_placed(problem, axes) for problem in error.problems]) from None
         return Stop(index, key or stop_key(scenario), scenario, self.histories)
+
+    @property
+    def vehicles(self) -> int:
+        """How many vehicles move together in a stop."""
+        return 1
 
     def conditions(self, index: int) -> dict[str, Any]:
         """What the table tells of stop `index` that has no answers, from its texts where they tell."""
@@ -107,7 +114,7 @@ class Study:
         """Raise ScenarioError for the first value of an axis that makes no sound scenario in any combination."""
         for number, axis in enumerate(self.axes):
             for place in range(len(axis.values)):
-                self._check_value(number, place)
+                self._sound(number, place)
 
     def _index(self, places: Mapping[int, int]) -> int:
         """The stop at the given places of the axes, by their number; the first place on every other axis."""
@@ -116,7 +123,8 @@ class Study:
             index = index * len(axis.values) + places.get(number, 0)
         return index
 
-    def _check_value(self, number: int, place: int) -> None:
+    def _sound(self, number: int, place: int) -> int:
+        """A stop in which axis `number` takes the value at `place`. Raises ScenarioError where none is sound."""
         first: ScenarioError | None = None
         for index in self._indices_with(number, place):
             try:
@@ -124,9 +132,9 @@ class Study:
             except ScenarioError as error:
                 first = first or error
             else:
-                return
-        if first is not None:
-            raise first
+                return index
+        assert first is not None
+        raise first
 
     def _indices_with(self, number: int, place: int) -> Iterator[int]:
         """Stops in which axis `number` takes the value at `place`, spread over the study."""
@@ -174,7 +182,7 @@ class WagonStudy(Study):
         """The models of the load, each with a stop that has it."""
         for number, axis in enumerate(self.axes):
             if axis.key == LIQUID:
-                return {model: self._index({number: place}) for place, model in enumerate(axis.values)}
+                return {model: self._sound(number, place) for place, model in enumerate(axis.values)}
         return {str(self._wagon.tank.liquid.model): 0}
 
     def check(self) -> None:
@@ -212,6 +220,12 @@ class TrainStudy(Study):
 
     answers = TrainResult
 
+    @property
+    def vehicles(self) -> int:
+        """How many vehicles move together in a stop."""
+        assert isinstance(self.base, TrainScenario)
+        return len(self.base.vehicles)
+
     def conditions(self, index: int) -> dict[str, Any]:
         """Speed in km/h of stop `index`."""
         values, train = self.values(index), self.base
@@ -225,7 +239,7 @@ class TrainStudy(Study):
         found: dict[str, int] = {}
         for number, axis in enumerate(self.axes):
             places = range(len(axis.values)) if axis.key.endswith(LIQUID) else (0,)
-            for index in (self._index({number: place}) for place in places):
+            for index in (self._sound(number, place) for place in places):
                 train = self.stop(index).scenario
                 assert isinstance(train, TrainScenario)
                 found |= {kind: index for kind in train.liquids if kind not in found}

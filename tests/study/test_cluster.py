@@ -103,6 +103,35 @@ def test_the_rows_are_the_same_to_the_last_bit_on_one_thread_two_threads_and_a_c
     assert len(tables["one"].splitlines()) == 13
 
 
+TRAIN = """\
+format: 1
+name: cheap
+vehicles:
+  - {scenario: tank-wagon, count: 3, set: {tank.liquid.model: rigid, tank.coefficients: computed}}
+braking: {initial_speed: 6 km/h, onset: 0.1 s, stop_speed: 0.2 m/s}
+solver: {tolerance: 1.0e-2}
+"""
+
+
+@needs_dask
+def test_the_rows_of_trains_are_the_same_on_one_thread_two_threads_and_a_cluster(
+    tmp_path: Path, processes: Processes
+) -> None:
+    train = tmp_path / "train.yaml"
+    train.write_text(TRAIN, encoding="utf-8")
+    grid = ["sweep", train, "--v0", "5,6", "--vary", "vehicles.2.tank.fill=0.4,0.6", "--json"]
+    grid += ["--vary", "coupling=screw,automatic"]
+    tables = []
+    for name, how in {"one": ["--jobs", 1], "two": ["--jobs", 2], "dask": ["--cluster", processes.address]}.items():
+        where = folder(tmp_path, name)
+        code, out, err = run_slosh(where, *grid, *how)
+        assert code == 0, err
+        assert json.loads(out)["done"] == 8
+        tables.append((where / TABLE).read_bytes())
+    assert tables[0] == tables[1] == tables[2]
+    assert len(tables[0].splitlines()) == 9
+
+
 @needs_dask
 @pytest.mark.parametrize("stops", [120, pytest.param(600, marks=pytest.mark.slow)])
 def test_a_worker_that_is_killed_midway_loses_nothing(tmp_path: Path, processes: Processes, stops: int) -> None:

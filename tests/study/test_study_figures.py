@@ -217,6 +217,15 @@ def test_without_torque_and_speed_the_last_key_lies_along_the_bottom() -> None:
     assert shown(Wishes(speeds="80", torques="5")) == []
 
 
+def test_an_answer_of_zero_is_an_answer() -> None:
+    solid = [Mark(1.0, 0.0, STOPPED, True), Mark(2.0, 80.0, STOPPED, True)]
+    for marks in (solid, solid[:1]):
+        (axes,) = study_figure(page(panels=[StopsPanel("80 km/h", {"tension": marks})])).axes
+        assert "no stop has an answer" not in [text.get_text() for text in axes.texts]
+        assert axes.get_yscale() == "linear"
+        assert axes.get_ylim()[0] < 0.0
+
+
 def test_words_along_the_bottom_are_named() -> None:
     study = build(Wishes(vary=["contact.adhesion=dry,wet"]))
     rows = [

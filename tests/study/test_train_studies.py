@@ -17,7 +17,9 @@ from slosh_cli.results.hdf5 import read_train
 from slosh_cli.results.simulate import simulate_train
 from slosh_cli.scenario.train_file import load_train
 from slosh_cli.study.build import Wishes, build, grid
+from slosh_cli.study.estimate import seconds_per_stop
 from slosh_cli.study.key import stop_key
+from slosh_cli.study.runner import plan
 
 TRAIN = """\
 format: 1
@@ -56,8 +58,11 @@ def test_the_rows_of_a_study_are_those_of_single_runs(file: Path) -> None:
             f"braking.initial_speed={row['v0_km_h']} km/h",
         )
         alone = simulate_train(load_train(file, overrides))
-        for answer in ("braking_distance_m", "max_compression_N", "max_tension_N", "compression_at", "steps"):
+        answers = ("braking_distance_m", "max_compression_N", "max_tension_N", "compression_at", "steps")
+        for answer in (*answers, "max_compression_s", "max_tension_s", "max_wheel_unloading"):
             assert row[answer] == pytest.approx(getattr(alone, answer), rel=1e-12), answer
+        largest = alone.couplings[row["compression_at"] - 1]
+        assert largest.max_compression_s == row["max_compression_s"]
     assert len({row["max_compression_N"] for row in found.rows}) == 8
     assert set(found.figures()) == {f"{kind}_{k}" for kind in ("braking_distance", "coupler_forces") for k in (1, 2)}
 
@@ -81,6 +86,44 @@ def test_a_train_with_other_values_is_the_one_that_its_file_with_them_tells(file
     assert stop_key(changed) != stop_key(train)
 
 
+@pytest.mark.parametrize("keys", [("all.tank.fill", "vehicles.1.tank.fill"), ("vehicles.1.tank.fill", "all.tank.fill")])
+def test_what_is_said_of_one_vehicle_holds_there_in_any_order(file: Path, keys: tuple[str, str]) -> None:
+    values = {"all.tank.fill": ("0.4", "0.6"), "vehicles.1.tank.fill": ("0.7", "0.8")}
+    study = build(Wishes(file, vary=tuple(f"{key}={','.join(values[key])}" for key in keys)))
+    for index in range(study.size):
+        told = study.values(index)
+        one, every = float(told["vehicles.1.tank.fill"]), float(told["all.tank.fill"])
+        assert [vehicle.tank.fill for vehicle in study.stop(index).scenario.vehicles] == [one, every, every]
+        alone = load_train(file, [f"{key}={told[key]}" for key in keys])
+        assert study.stop(index).key == stop_key(alone)
+
+
+def test_what_is_set_of_one_vehicle_holds_in_a_study_of_all(file: Path) -> None:
+    one = "vehicles.3.tank.fill=0.8"
+    study = build(Wishes(file, (one,), vary=("all.tank.fill=0.4,0.6",)))
+    for index, fill in enumerate(("0.4", "0.6")):
+        alone = load_train(file, [one, f"all.tank.fill={fill}"])
+        assert [vehicle.tank.fill for vehicle in alone.vehicles] == [float(fill), float(fill), 0.8]
+        assert study.stop(index).key == stop_key(alone)
+
+
+def test_a_combination_that_is_not_sound_costs_only_itself(file: Path) -> None:
+    speeds = {"braking.stop_speed": "7 km/h,0.2 m/s", "braking.initial_speed": "6,10 km/h"}
+    rows = sweep(file, speeds).rows
+    assert [row["status"] for row in rows] == ["failed", "stopped", "stopped", "stopped"]
+    assert "must be below the initial speed" in rows[0]["reason"]
+
+
+def test_a_train_that_has_not_been_compiled_is_expected_to_take_as_long_as_its_vehicles(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("slosh_cli.compiled.solver_is_cached", lambda _: False)
+    study = build(Wishes(file, vary=("all.tank.fill=0.4,0.6",)))
+    wagon = build(Wishes(file.parent / "own.yaml", vary=("tank.fill=0.4,0.6", "tank.coefficients=computed")))
+    each, of_wagon = (seconds_per_stop(one, plan(one, None, tmp_path), None) for one in (study, wagon))
+    assert each == 3 * of_wagon
+
+
 def test_what_says_nothing_of_the_answer_is_not_in_a_trains_key(file: Path) -> None:
     train = load_train(file)
     words = {"name": "other", "description": "other", "output.interval": "1 s"}
@@ -93,6 +136,7 @@ BAD = {
     "vehicles.4.tank.fill": ("0.5", "vehicle from the front, 1 to 3"),
     "vehicles.2.tank.fil": ("0.5", "write `fill`"),
     "all.braking.initial_speed": ("5 km/h", "write `braking.initial_speed=...`"),
+    "vehicles.02.tank.fill": ("0.5", "must be `all.KEY`"),
     "vehicles": ("1", "must be `all.KEY`"),
     "all.tank.fill": ("0.5,7", "number from 0.02"),
     "tank.fill": ("0.5", "tank"),
@@ -115,6 +159,7 @@ def test_wrong_keys_and_values_are_told_before_anything_runs(file: Path, key: st
         ({"torques": "5,6", "speeds": "5"}, "all.braking.torque"),
         ({"liquids": "modal"}, "all.tank.liquid.model"),
         ({"vary": ("braking.torque=5 kN m",)}, "all.braking.torque"),
+        ({"speeds": "5", "vary": ("braking.initial_speed=6 km/h",)}, "ask for the same"),
     ],
 )
 def test_what_only_wagons_have_is_refused_with_the_way_to_say_it(file: Path, wishes: dict, told: str) -> None:
@@ -143,6 +188,30 @@ def test_a_study_may_be_interrupted_and_one_of_another_wagon_computes_anew(file:
     own = file.parent / "own.yaml"
     own.write_text(own.read_text(encoding="utf-8").replace("mass: 1.8 t", "mass: 1.9 t"), encoding="utf-8")
     assert sweep(file, VARY, folder=parts).reused == 0
+
+
+def test_a_study_that_is_killed_loses_nothing_and_its_table_is_that_of_an_uninterrupted_one(
+    file: Path, tmp_path: Path
+) -> None:
+    journal = tmp_path / "killed" / "journal.sqlite"
+    arguments = ["sweep", file, "--vary", "all.tank.fill=0.41:0.65:0.02", "--v0", "5,6", "--json", "--jobs", 2]
+    process = start_slosh(tmp_path, *arguments, "-o", "killed")
+    until = time.monotonic() + 120.0
+    while count(journal) < 4 and time.monotonic() < until and process.poll() is None:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    before = journal_rows(journal)
+    assert 4 <= len(before) < 26
+    code, out, err = run_slosh(tmp_path, *arguments, "-o", "killed")
+    assert code == 0, err
+    assert json.loads(out)["reused"] == len(before)
+    assert before.items() <= journal_rows(journal).items()
+    vary = {"all.tank.fill": "0.41:0.65:0.02", "braking.initial_speed": "5,6 km/h"}
+    sweep(file, vary, folder=tmp_path / "whole", threads=1)
+    tables = [(tmp_path / name / "braking_distance.csv").read_bytes() for name in ("killed", "whole")]
+    assert tables[0] == tables[1]
+    assert len(tables[0].splitlines()) == 27
 
 
 def test_histories_of_a_study_are_those_of_trains(file: Path, tmp_path: Path) -> None:
