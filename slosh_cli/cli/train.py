@@ -36,12 +36,12 @@ def run_train(
 def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -> ExitCode:
     """Say that a train is sound, and what of."""
     from slosh_cli.application.stop import outlook
-    from slosh_cli.results.train_result import gathered
+    from slosh_cli.results.train_result import gathered, slack_warnings
     from slosh_cli.scenario.train_file import load_train
 
     train = load_train(file, overrides or ())
     vehicles, last = train.vehicles, train.vehicles[-1]
-    warnings = gathered([outlook(vehicle)[0] for vehicle in vehicles])
+    warnings = (*gathered([outlook(vehicle)[0] for vehicle in vehicles]), *slack_warnings(train))
     length = sum(one.wagon.length_in_train for one in vehicles)
     if as_json:
         found = {"name": train.name, "valid": True, "describes": "a train", "file": str(file), "length_m": length}

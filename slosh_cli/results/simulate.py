@@ -20,7 +20,7 @@ from slosh_cli.results.recommendation import Recommendation, recommend, stop_dec
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.slides import Slide, slide_check
-from slosh_cli.results.train_result import CouplingResult, TrainResult, VehicleResult, gathered
+from slosh_cli.results.train_result import CouplingResult, TrainResult, VehicleResult, gathered, slack_warnings
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
@@ -132,7 +132,7 @@ def simulate_train(
         scenario=train,
         status=status,
         reason=reason.format(time=clock, speed=mean_speed(run.train)),
-        warnings=gathered([vehicle.checks for vehicle in vehicles]),
+        warnings=(*gathered([vehicle.checks for vehicle in vehicles]), *slack_warnings(train)),
         time=run.rows[:, 0, 0],
         braking_distance_m=place - first.account.onset_position if stopped else None,
         braking_time_s=clock - first.account.onset_time if stopped else None,

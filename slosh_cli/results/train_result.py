@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _TOLD = Shown.JSON | Shown.SUMMARY | Shown.HISTORY
 _EVERYWHERE = ~Shown(0)
+_FOR_SLACK = 5e-5
+"""Tolerance from which on the largest forces of couplings with slack stay where they are, to a thousandth."""
 
 
 class VehicleResult(Answers):
@@ -214,3 +216,16 @@ def gathered(verdicts: Sequence[Sequence[Check]]) -> tuple[str, ...]:
         others = f" (and {len(cases) - 1} more)" if len(cases) > 1 else ""
         told.append(f"vehicle {number}{others}: {meaning}")
     return tuple(told)
+
+
+def slack_warnings(train: "TrainScenario") -> tuple[str, ...]:
+    """What a tolerance that is coarse for couplings with slack leaves open."""
+    coupling, tolerance = train.file.coupling, train.vehicles[0].solver.tolerance
+    springs = [spring for spring in (coupling.compression, coupling.tension) if spring is not None]
+    slack = any(spring.loading[1][1] == 0.0 for spring in springs)
+    if not slack or tolerance <= _FOR_SLACK or len(train.vehicles) < 2:
+        return ()
+    return (
+        f"The couplings have slack, and solver.tolerance is {tolerance:g}: where vehicles run into each other, forces "
+        "of single couplings may err by a hundredth, small ones by more. Write `solver: {tolerance: 5.0e-5}`.",
+    )

@@ -90,6 +90,15 @@ def test_check_says_that_it_is_a_train(slosh: Slosh, file: Path) -> None:
     assert json.loads(slosh("check", file, "--json").out)["describes"] == "a train"
 
 
+def test_couplings_with_slack_ask_for_a_finer_tolerance(slosh: Slosh, file: Path) -> None:
+    words = "The couplings have slack"
+    for command in (("check", file), ("run", file, "--no-figures", "-o", "kept")):
+        assert words not in slosh(*command, "--json").out
+        coarse = slosh(*command, "--set", "coupling=automatic", "--set", "all.solver.tolerance=1e-4", "--json")
+        assert any(words in warning for warning in json.loads(coarse.out)["warnings"])
+        assert words not in slosh(*command, "--set", "coupling=automatic", "--set", "all.solver.tolerance=5e-5").out
+
+
 def test_a_bad_train_ends_with_2(slosh: Slosh, file: Path) -> None:
     file.write_text(TRAIN.replace("count: 2", "count: 0"), encoding="utf-8")
     for command in ("run", "check"):
