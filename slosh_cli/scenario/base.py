@@ -51,7 +51,8 @@ class Part(BaseModel):
     without building one.
 
     `noun` is what people call the part. `rules` tie values below it together; their key paths begin at it. Of the
-    fields in each group of `exactly_one`, which are None where they are left out, one has to be written.
+    fields in each group of `exactly_one`, which are None where they are left out, one has to be written. A `word`
+    stands for a part that cannot be written in full.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
@@ -60,6 +61,7 @@ class Part(BaseModel):
     aliases: ClassVar[tuple[Alias, ...]] = ()
     exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     rules: ClassVar[tuple[Callable[[Values], Iterator[Finding]], ...]] = ()
+    word: ClassVar[str] = ""
 
     @classmethod
     def from_text(cls, data: Any) -> Self:

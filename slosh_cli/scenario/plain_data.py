@@ -34,7 +34,7 @@ def _spots(model: type[Part]) -> tuple[tuple[str, Spot], ...]:
 
 def _plain(value: Any, spot: Spot | None, as_text: bool) -> Any:
     if isinstance(value, Part):
-        return plain_data(value, as_text=as_text)
+        return value.word or plain_data(value, as_text=as_text)
     if spot is not None and spot.branches is not None:
         spot = spot.chosen(value)
     if spot is not None and spot.leaf is not None:

@@ -55,7 +55,7 @@ def _bogies_apart(v: Values) -> Iterator[Finding]:
 
 def _domain_holds_wagon(v: Values) -> Iterator[Finding]:
     """The rail's ends must be so far from the wheels that they change the deflection there by less than 1 %."""
-    if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing", "track.domain.length"):
+    if not v.has("wagon.bogie.wheelbase", "wagon.pivot_spacing", "track.domain.length") or _on_springs(v):
         return
     wheels = v["wagon.pivot_spacing"] + v["wagon.bogie.wheelbase"]
     margin, length = _margin(v), v["track.domain.length"]
@@ -70,6 +70,11 @@ def _domain_holds_wagon(v: Values) -> Iterator[Finding]:
         if margin > rail_reach.LEAST_MARGIN:
             rule += ", or the rail's ends change its deflection on this track by more than 1 %"
         yield _finding("track.domain.length", rule, _metres(length), f"write at least `{shown(needed)} m`")
+
+
+def _on_springs(v: Values) -> bool:
+    """Whether no stretch of rail is computed, so that its lengths say nothing."""
+    return bool(v.get("track.model") == "rigid")
 
 
 def _margin(v: Values) -> float:
@@ -93,7 +98,7 @@ def _rounded_up(metres: float) -> float:
 def _elements(v: Values) -> Iterator[Finding]:
     key = "track.domain.element_length"
     element, length = v.get(key), v.get("track.domain.length")
-    if element is None:
+    if element is None or _on_springs(v):
         return
     if v.has("wagon.bogie.wheelbase") and element > 0.5 * v["wagon.bogie.wheelbase"]:
         most = 0.5 * v["wagon.bogie.wheelbase"]

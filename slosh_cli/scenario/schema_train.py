@@ -170,8 +170,13 @@ class TrainEntry(Part):
     )
 
 
-_RIGID: Final = Track.model_construct(model="rigid", rail=None, foundation=None)
-"""Stands for the first vehicle's track, with each wheel on the rail's static stiffness."""
+class _FirstOnSprings(Track):
+    """Stands for the first vehicle's track, with each wheel on the rail's static stiffness."""
+
+    word: ClassVar[str] = "rigid"
+
+
+_RIGID: Final = _FirstOnSprings.model_construct(model="rigid", rail=None, foundation=None)
 
 
 class BrakePipe(Part):
@@ -221,6 +226,6 @@ class TrainFile(Root):
         """What the train says for all its vehicles, by key path."""
         braking = {f"braking.{key}": getattr(self.braking, key) for key in ("initial_speed", "stop_speed", "onset")}
         parts = {key: getattr(self, key) for key in SHARED if getattr(self, key) is not None}
-        if self.track is not None and self.track == _RIGID:
+        if isinstance(self.track, _FirstOnSprings):
             parts[TRACK_MODEL] = parts.pop("track").model
         return braking | parts

@@ -16,6 +16,8 @@ from slosh_cli.blocks import Block
 from slosh_cli.scenario import Track
 from slosh_cli.track.banded import END, ENTRIES, FIRST, factor_rows, solve_four
 
+_UNBENDING = 1e300
+"""N m^2; a bending stiffness past all others."""
 MASS, TENSION, DRIFT, BENDING, TWIST, _FORMS = range(0, 6 * ENTRIES, ENTRIES)
 """Where each form's entries begin in `RailModel.forms`."""
 
@@ -153,7 +155,7 @@ def _springs(track: Track, wheels: int) -> RailModel:
         contact=np.arange(wheels),
         nodes=wheels,
         mass=track.rail.mass_per_length * length,
-        bending_stiffness=bending,
+        bending_stiffness=_UNBENDING,  # nothing bends, and what bounds the waves of a rail finds none
         stiffness=2.0 * bending * product * total,
         shear_stiffness=0.0,
         damping=foundation.damping * length + foundation.shear_damping * slopes,

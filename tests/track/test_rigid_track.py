@@ -1,11 +1,14 @@
 """Wheels on the rail's static stiffness in place of the moving rail (theory section 6)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 from slosh_cli.errors import PhysicsError, ScenarioError
 from slosh_cli.results.simulate import simulate, simulate_train
+from slosh_cli.results.wagon_range import wagon_checks
 from slosh_cli.scenario.train_file import load_train
 from slosh_cli.track.mem import rail_model, steady_shapes
 
@@ -66,8 +69,50 @@ def test_the_ledger_closes_over_dips_and_lifted_wheels(shipped):
     dip = "track.unevenness={dips: [{position: 40 m, length: 0.6 m, depth: 8 mm}]}"
     result = simulate(shipped("tank_wagon", "track.model=rigid", dip, "braking.initial_speed=60 km/h"))
     assert result.status == "stopped"
-    assert min(result.min_wheel_load_N) < 0.5 * max(result.static_wheel_load_N)
+    assert min(result.min_wheel_load_N) == 0.0
     assert result.energy_residual < 1e-4
+
+
+def test_springs_carry_no_waves_whose_error_would_shorten_steps(shipped):
+    fast = shipped(
+        "paper_80_solid", "track.foundation.stiffness=1e5 N/m^2", "track.foundation.shear_stiffness=0 N",
+        "braking.initial_speed=140 m/s", "output.interval=1 s",
+    )  # fmt: skip
+    assert simulate(fast.with_({"track.model": "rigid"})).steps < simulate(fast).steps
+
+
+@pytest.mark.parametrize("window", ["length=14 m", "element_length=3 m"])
+def test_the_stretch_of_a_rail_that_is_not_computed_may_be_any(shipped, window):
+    given = f"track.domain.{window}"
+    with pytest.raises(ScenarioError, match=r"track\.domain"):
+        shipped("tank_wagon", given)
+    assert shipped("tank_wagon", given, "track.model=rigid").track.domain
+
+
+DIP = "track.unevenness={{dips: [{{position: 40 m, length: {} m, depth: 4 mm}}]}}"
+
+
+@pytest.mark.parametrize(
+    ("model", "blow", "told"),
+    [
+        ("rigid", DIP.format(0.6), True),
+        ("rigid", "wagon.wheel_flats=[{wheel: 2, length: 20 mm, depth: 0.1 mm}]", True),
+        ("rigid", DIP.format(6), False),
+        ("rigid", "track.unevenness={spectrum: erri-low}", False),
+        ("moving-element", DIP.format(0.6), False),
+    ],
+)
+def test_a_blow_that_springs_give_back_is_warned_of(shipped, model, blow, told):
+    found = wagon_checks(shipped("tank_wagon", f"track.model={model}", blow))
+    assert any("Wheels on springs" in check.meaning and not check.within for check in found) is told
+
+
+def test_wheel_loads_over_what_is_not_warned_of_are_those_on_the_rail(shipped):
+    rail = simulate(shipped("tank_wagon", DIP.format(2), "braking.initial_speed=60 km/h", "tank.liquid.model=rigid"))
+    springs = simulate(rail.scenario.with_({"track.model": "rigid"}))
+    assert all(check.within for check in wagon_checks(springs.scenario) if "Wheels on springs" in check.meaning)
+    assert springs.max_wheel_unloading == pytest.approx(rail.max_wheel_unloading, abs=1e-2)
+    assert springs.max_wheel_load_N == pytest.approx(rail.max_wheel_load_N, rel=1e-2)
 
 
 def test_no_stop_begins_above_the_critical_speed_on_springs_either(shipped):
@@ -114,6 +159,26 @@ def test_a_train_or_a_vehicle_is_put_on_springs_by_a_word(train):
     assert models(train("vehicles.2.track=rigid")) == [False, True, False, False]
     assert models(train(added="track: rigid")) == [False, True, True, True]
     assert train("track=rigid").vehicles[1].track.rail == train().vehicles[1].track.rail
+
+
+def test_the_word_is_written_as_a_word(train, tmp_path):
+    own, *_ = train("track=rigid").text.split("---\n")
+    assert "track: rigid\n" in own
+    (tmp_path / "again.yaml").write_text(own, encoding="utf-8")
+    assert models(load_train(tmp_path / "again.yaml")) == [True] * 4
+
+
+def test_a_mistake_elsewhere_is_told_alone(train):
+    with pytest.raises(ScenarioError) as refused:
+        train("track=rigid").with_({"braking.onset": -1.0})
+    assert [problem.key for problem in refused.value.problems] == ["braking.onset"]
+
+
+def test_a_train_of_one_is_the_wagon_on_springs(train):
+    alone = train("track=rigid", "braking.initial_speed=40 km/h")
+    one = replace(alone, vehicles=alone.vehicles[:1])
+    whole, wagon = simulate_train(one), simulate(one.vehicles[0])
+    assert (whole.braking_distance_m, whole.energy_residual) == (wagon.braking_distance_m, wagon.energy_residual)
 
 
 @pytest.mark.parametrize(
