@@ -87,8 +87,17 @@ class FrictionSpring:
         self.held, self.place = self.force(c), c
 
 
-def second_train(wagons: list[SloshingWagon], spring: Callable[[], FrictionSpring], times, rtol: float = 1e-5):
-    """Forces (couplings, n) in N of whole couplings and positions (wagons, n) in m at `times` (n,) in s."""
+def second_train(
+    wagons: list[SloshingWagon],
+    spring: Callable[[], FrictionSpring],
+    times,
+    rtol: float = 1e-5,
+    longest: float = _LONGEST,
+):
+    """Forces (couplings, n) in N of whole couplings and positions (wagons, n) in m at `times` (n,) in s.
+
+    No step is longer than `longest` s.
+    """
     springs, sizes = [spring() for _ in wagons[1:]], [2 * wagon.size for wagon in wagons]
     cuts = np.cumsum(sizes)[:-1]
 
@@ -113,7 +122,7 @@ def second_train(wagons: list[SloshingWagon], spring: Callable[[], FrictionSprin
     told, places = np.zeros((len(springs), len(times))), np.zeros((len(wagons), len(times)))
     begin, done = 0.0, 0
     for end in [*sorted({wagon.onset for wagon in wagons}), float(times[-1]) + 1e-9]:
-        run = Radau(slope, begin, state, end, rtol=rtol, atol=1e-9, max_step=_LONGEST)
+        run = Radau(slope, begin, state, end, rtol=rtol, atol=1e-9, max_step=longest)
         while run.status == "running":
             message = run.step()
             assert run.status != "failed", message
