@@ -110,10 +110,11 @@ def _title(result: Result) -> str:
 
 
 def _where(files: Mapping[str, Any]) -> str:
-    lines = [""] + [f"  {kind}  {files[kind]}" for kind in ("history", "summary") if kind in files]
+    width = max(map(len, files))
+    lines = ["", *(f"  {kind:{width}}  {file}" for kind, file in files.items() if kind != "figures")]
     figures = [Path(file) for file in files["figures"]]
     if figures:
         names = ", ".join(dict.fromkeys(file.stem for file in figures))
         kinds = ", ".join(dict.fromkeys(file.suffix for file in figures))
-        lines.append(f"  figures  {figures[0].parent}: {names} ({kinds})")
+        lines.append(f"  {'figures':{width}}  {figures[0].parent}: {names} ({kinds})")
     return "\n".join(lines)

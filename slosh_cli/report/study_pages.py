@@ -135,37 +135,41 @@ def value_text(axis: Axis, row: Mapping[str, Any]) -> str:
 
 def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
     """The figures of a study; none where nothing but the load varies."""
-    found = list(rows)
-    each = _OF_A_TRAIN if isinstance(study.base, TrainScenario) else _OF_A_WAGON
-    return [page for shown in each for page in _pages(study, found, shown)]
-
-
-def _pages(study: Study, rows: Iterable[Mapping[str, Any]], shown: Answered) -> list[Page]:
     varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
     if not varied:
         return []
     along = next((axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1])
     others = sorted((axis for axis in varied if axis is not along), key=lambda axis: axis.key != SPEED)
     beside, apart = (others[0] if others else None), others[1:]
-    found: dict[str, dict[str, StopsPanel]] = {}
+    each = _OF_A_TRAIN if isinstance(study.base, TrainScenario) else _OF_A_WAGON
+    found: dict[Answered, dict[str, dict[str, StopsPanel]]] = {shown: {} for shown in each}
     ticks: dict[Any, int] = {}
     for row in rows:
         page = ", ".join(f"{name_of(axis)} {value_text(axis, row)}" for axis in apart)
         title = _panel_title(beside, row)
-        panel = found.setdefault(page, {}).setdefault(title, StopsPanel(title))
-        for curve, value in shown.curves(row):
-            panel.curves.setdefault(curve, []).append(_mark(along, row, value, ticks))
-    for panel in (panel for panels in found.values() for panel in panels.values()):
-        for marks in panel.curves.values():
-            marks.sort(key=lambda mark: mark.x)
+        for shown, drawn in found.items():
+            panel = drawn.setdefault(page, {}).setdefault(title, StopsPanel(title))
+            for curve, value in shown.curves(row):
+                panel.curves.setdefault(curve, []).append(_mark(along, row, value, ticks))
     unit = unit_of(along)
-    best = "most effective torque" if along.key == TORQUE else "shortest" if shown.name == _DISTANCE else "least"
     label = f"{name_of(along)} / {unit}" if unit else name_of(along)
     return [
-        Page(shown, _conditions(study, page), label, unit, best, together, list(ticks))
-        for page, panels in found.items()
-        for together in _shared_out(list(panels.values()), _MOST_PANELS)
+        Page(shown, _conditions(study, page), label, unit, _best(along, shown), together, list(ticks))
+        for shown, drawn in found.items()
+        for page, panels in drawn.items()
+        for together in _shared_out([_in_order(panel) for panel in panels.values()], _MOST_PANELS)
     ]
+
+
+def _in_order(panel: StopsPanel) -> StopsPanel:
+    for marks in panel.curves.values():
+        marks.sort(key=lambda mark: mark.x)
+    return panel
+
+
+def _best(along: Axis, shown: Answered) -> str:
+    """What the lowest point of a curve is called."""
+    return "most effective torque" if along.key == TORQUE else "shortest" if shown.name == _DISTANCE else "least"
 
 
 def _shared_out(panels: Sequence[_T], most: int) -> Iterator[Sequence[_T]]:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from slosh_cli.arrays import Matrix, Vector
+from slosh_cli.arrays import Integers, Matrix, Vector
 from slosh_cli.report import FORMATS, TRAIN_FIGURES
 from slosh_cli.report.figures import FRONT, REAR
 from slosh_cli.report.saving import INK, MUTED, save, styled
@@ -61,13 +61,20 @@ def _title(train: TrainHistory, title: str) -> str:
     return f"{title}: {train.name}, {len(train.vehicles)} vehicles"
 
 
+def _largest(values: Vector, begins: Integers) -> Vector:
+    """The value of largest magnitude of each stretch: no blow is lost where there is no room for every row."""
+    low, high = np.minimum.reduceat(values, begins), np.maximum.reduceat(values, begins)
+    return np.where(-low > high, low, high)
+
+
 def _waterfall(axes: Any, train: TrainHistory, values: Sequence[Vector], front: float, colours: str) -> Any:
     """Draw time against the place in the train, the front above; values of either sign in shades of their own. The
     first of them begins at the place `front`."""
     edges = np.arange(len(values) + 1) + front
     every = max(len(train.time) // _MOST_COLUMNS, 1)
-    found: Matrix = np.array([one[::every] for one in values])
-    most, times = max(float(np.abs(found).max()), 1e-9), train.time[::every]
+    begins = np.arange(0, len(train.time), every)
+    found: Matrix = np.array([_largest(one, begins) for one in values])
+    most, times = max(float(np.abs(found).max()), 1e-9), train.time[begins]
     across = np.concatenate([times, times[-1:] + (train.time[-1] - times[-1]) + 1e-9])
     drawn = axes.pcolormesh(across, edges, found, cmap=colours, vmin=-most, vmax=most, rasterized=True)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
@@ -107,7 +114,7 @@ def _coupling_extremes(train: TrainHistory) -> Figure:
     places = np.arange(1, len(train.couplings) + 1)
     for way, marker, look in (("compression", "o", FRONT), ("tension", "s", REAR)):
         forces = [one.facts[f"max_{way}_N"] / 1e3 for one in train.couplings]
-        above.plot(places, forces, marker=marker, label=way, **look)
+        above.plot(places, forces, marker=marker, label=way, clip_on=False, **look)
         instants = [one.facts.get(f"max_{way}_s", np.nan) for one in train.couplings]
         below.plot(places, instants, marker=marker, label=way, **look)
     above.set_ylim(bottom=0.0)

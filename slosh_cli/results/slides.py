@@ -17,6 +17,8 @@ _MILD = 5.3e-9 / _STEEL
 """Volume worn per friction work, m^3/J: 5.3 ug per m and mm^2 and N/mm^2."""
 _MILD_UP_TO = 10.4e6
 """Friction per area, Pa, below which wear is mild."""
+_STANDING = 1e-3
+"""Longest slide, m, of a wheel that locks as its vehicle comes to a stand: it wears nothing."""
 _SOURCE = (
     "estimate, not a rule: wear of R8T wheel steel by F. Braghin et al., Wear 261 (2006) 1253-1264 (55 ug per m and "
     "mm^2 above a friction of 10.4 N/mm^2, 5.3 ug per m and N below); a flat cap of depth d has the area 2 pi d "
@@ -38,7 +40,8 @@ class Slide:
 
 
 def slide_check(slides: Sequence[Slide], scenario: Scenario) -> Check:
-    """The verdict on the wheels that locked."""
+    """The verdict on the wheels that locked and slid further than it takes to come to a stand."""
+    slides = [one for one in slides if one.distance > _STANDING]
     radius, crown = scenario.wagon.wheelset.wheel_radius, scenario.contact.rail_crown_radius
     longest = max((one.seconds for one in slides), default=0.0)
     wheels = ", ".join(_words(one, radius, crown) for one in slides)

@@ -212,7 +212,7 @@ def gathered(verdicts: Sequence[Sequence[Check]]) -> tuple[str, ...]:
                 found.setdefault(check.name, []).append((over, number, meaning))
     told = []
     for cases in found.values():
-        _, number, meaning = max(cases)
+        _, number, meaning = max(cases, key=lambda case: case[0])  # the first of several alike
         others = f" (and {len(cases) - 1} more)" if len(cases) > 1 else ""
         told.append(f"vehicle {number}{others}: {meaning}")
     return tuple(told)

@@ -63,8 +63,9 @@ def _settle_slides(vehicle, time, step):
     """
     account, points = vehicle.account, vehicle.points
     start, middle, end = points[START], points[MIDDLE], points[END]
+    stands = min(abs(start.v[0]), abs(end.v[0])) < vehicle.line.standing
     for i in range(vehicle.wagon.wheels):
-        if not vehicle.locked[i] or abs(start.v[0]) < vehicle.line.standing:
+        if stands or not vehicle.locked[i]:
             account.sliding[i] = account.sliding_work[i] = 0.0
             continue
         if account.locked_time[i] == 0.0:

@@ -291,3 +291,26 @@ def test_brakes_of_several_vehicles_may_break_at_once_but_for_rounding(shipped):
     run = integrate(train_problem(each, linear(1e6))[0])
     assert run.outcome == loop.STOPPED
     assert run.train.steps < 1000
+
+
+def test_vehicles_that_stand_while_their_train_still_rolls_do_not_slide(shipped):
+    """The light vehicle stands on locked wheels, held by its brake; one whose brake is too strong slides there."""
+
+    def light(torque):
+        each = [
+            shipped(
+                "paper_80_solid", "braking.initial_speed=30 km/h", "output.interval=1 s", f"tank.fill={fill}",
+                "tank.coefficients=computed", f"braking.torque={own} kN m",
+            )
+            for own, fill in ((torque, 0.1), (2.5, 0.9))
+        ]  # fmt: skip
+        return integrate(train_problem(each, linear(5e4))[0]).train.vehicles[0]
+
+    for torque in (4, 5):
+        stood = light(torque)
+        assert stood.locked.all()
+        assert abs(stood.points[START].v[0]) < 1e-4
+        assert (stood.account.locked_time == 0.0).all()
+    slid = light(60)
+    assert (slid.account.locked_time > 9.0).all()
+    assert (slid.account.slid > 40.0).all()

@@ -175,7 +175,7 @@ def test_a_mistake_elsewhere_is_told_alone(train):
 
 
 def test_a_train_of_one_is_the_wagon_on_springs(train):
-    alone = train("track=rigid", "braking.initial_speed=40 km/h")
+    alone = train("track=rigid", "braking.initial_speed=60 km/h")
     one = replace(alone, vehicles=alone.vehicles[:1])
     whole, wagon = simulate_train(one), simulate(one.vehicles[0])
     assert (whole.braking_distance_m, whole.energy_residual) == (wagon.braking_distance_m, wagon.energy_residual)
@@ -202,3 +202,13 @@ def test_a_train_on_springs_is_that_on_the_rail(train):
     assert mixed.max_compression_N == pytest.approx(rail.max_compression_N, rel=5e-3)
     assert len({rail.max_compression_N, springs.max_compression_N, mixed.max_compression_N}) == 3
     assert max(one.energy_residual for one in (springs, mixed)) < 1e-5
+
+
+def test_the_ledger_of_a_train_closes_with_friction_in_couplings_and_lifted_wheels(train):
+    dip = "all.track.unevenness={dips: [{position: 45 m, length: 0.6 m, depth: 8 mm}]}"
+    light = ("all.tank.liquid.model=rigid", "all.tank.fill=0.05", "braking.initial_speed=60 km/h")
+    result = simulate_train(train(*light, dip, "all.track=rigid"))
+    assert result.status == "stopped"
+    assert result.max_wheel_unloading == 1.0
+    assert result.max_compression_N > 1e3
+    assert result.energy_residual < 1e-4
