@@ -75,6 +75,7 @@ def empty_folder(folder: Path) -> Path:
     """A folder with nothing in it but the files that the README speaks of as the reader's own."""
     folder.mkdir(exist_ok=True)
     (folder / "brake.csv").write_text("time_s,deceleration_m_s2\n0,0\n2,1.5\n")
+    (folder / "sway.csv").write_text("time_s,displacement_m\n0,0\n1,0.1\n2,0\n3,-0.1\n4,0\n")
     (study,) = [text for kind, text in BLOCKS if kind == "yaml" and "\nvary:" in text]
     (folder / "study.yaml").write_text(study, encoding="utf-8")
     return folder

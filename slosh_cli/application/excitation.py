@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from slosh_cli.application.keeping import Keeping, by_kind
 from slosh_cli.application.plotting import writers
 from slosh_cli.application.prescription import Amount, Prescription
+from slosh_cli.errors import UsageError
 from slosh_cli.report import FORMATS
 from slosh_cli.results.validity import Check, plain_checks, warnings_of
 from slosh_cli.scenario import Scenario, TankScenario, load_any_scenario
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slosh_cli.application.plotting import Figures
-    from slosh_cli.arrays import Vector
+    from slosh_cli.arrays import Array, Vector
     from slosh_cli.results.channels import Channel
     from slosh_cli.results.recommendation import Recommendation
     from slosh_cli.solver.excite import Excitation
@@ -128,9 +129,13 @@ class ExcitationResult:
         rows = [dict(zip(("time_s", *columns), map(float, row), strict=True)) for row in values]
         channels = {Channel("deceleration", "m/s^2", "prescribed deceleration of the tank"): found.deceleration}
         channels |= dict(columns.values())
+        shift = Channel("liquid_shift", "m", "shift of the liquid's centre of mass in the tank, positive forward")
+        channels[shift] = found.watched.shift
         numbers: Mapping[str, Callable[[Path], object]] = {
             _TABLE: lambda path: write_table(rows, path),
-            _HISTORY: lambda path: write_excitation(self.scenario, found.time, channels, self._facts(), path),
+            _HISTORY: lambda path: write_excitation(
+                self.scenario, found.time, channels, self._facts(), path, _profiles(found)
+            ),
         }
         files = keeping.keep(folder, EXCITATION_FILES, numbers, writers(self.figures()))
         return by_kind(files, table=_TABLE, history=_HISTORY)
@@ -154,24 +159,42 @@ def excite(
     *,
     table: str | Path | None = None,
     interval: Amount = "10 ms",
+    motion: str | Path | None = None,
+    start: str | None = None,
+    probes: Sequence[Amount] = (),
 ) -> ExcitationResult:
     """Decelerate the tank of a scenario, of a stop or of a tank alone, or of its file, without pitching it.
 
     The deceleration is reached linearly within `ramp` (at once without one), then held; or it follows `table`, a CSV
-    file with the columns time_s and deceleration_m_s2. A liquid that its model cannot follow to the end is a result
+    file with the columns time_s and deceleration_m_s2; or from `motion`, one with time_s and displacement_m,
+    velocity_m_s or acceleration_m_s2, positive forward. At the `start` of a motion the liquid is at ``"rest"`` (the
+    default), so that a first speed comes as a blow, or ``"moving"`` with the tank. `probes` are distances from the rear
+    wall at which the surface is told. A liquid that its model cannot follow to the end is a result
     too: see its reason. Raises ScenarioError and UsageError for what cannot be used, TankError where slosh
     coefficients cannot be computed.
     """
     found = load_any_scenario(scenario) if isinstance(scenario, str | Path) else scenario
-    file = None if table is None else Path(table)
-    return excited(Prescription.read(deceleration, ramp, duration, file, interval), found)
+    file, moved = (None if path is None else Path(path) for path in (table, motion))
+    asked = Prescription.read(
+        deceleration, ramp, duration, file, interval, motion=moved, start=start, probes=tuple(probes)
+    )
+    return excited(asked, found)
 
 
 def excited(prescription: Prescription, scenario: Scenario | TankScenario) -> ExcitationResult:
-    """What the liquid does under a prescription. Raises TankError where slosh coefficients cannot be computed."""
+    """What the liquid does under a prescription.
+
+    Raises TankError where slosh coefficients cannot be computed, UsageError for a probe outside the tank.
+    """
     from slosh_cli.solver.excite import excite as integrated
 
-    found = integrated(scenario.tank, prescription.deceleration, prescription.duration, prescription.interval)
+    length = scenario.tank.length
+    for place in prescription.probes:
+        if not 0.0 <= place <= length:
+            rule = f"a probe must lie between the rear wall (0 m) and the front wall ({length:g} m)"
+            raise UsageError(f"{rule}; given {place:g} m", "probe")
+    asked = prescription
+    found = integrated(scenario.tank, asked.deceleration, asked.duration, asked.interval, asked.probes)
     checks, advice = _verdicts(scenario, found) if found.time.size > 1 else ((), None)
     return ExcitationResult(scenario, found, checks, advice, prescription.settings)
 
@@ -186,17 +209,35 @@ def _verdicts(scenario: Scenario | TankScenario, found: Excitation) -> tuple[tup
     if tank.liquid.model == "rigid":
         return (), None
     advice = recommend(tank, found.largest_deceleration)
-    motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=scenario.tank.fill < NEARLY_FULL)
+    shift = float(abs(found.watched.shift).max())
+    slot_alone = scenario.tank.fill < NEARLY_FULL
+    motion = Motion(abs(found.max_surface), found.largest_head, slot_alone=slot_alone, shift=shift)
     return (*tank_checks(tank, advice.sentence), *motion_checks(tank, motion, advice.sentence)), advice
 
 
 def _columns(found: Excitation) -> dict[str, tuple[Channel, Vector]]:
     """Column of the table -> channel of the history and its values."""
-    from slosh_cli.results.channels import CHANNELS
+    from slosh_cli.results.channels import CHANNELS, Channel
 
-    return {
+    columns = {
         "force_N": (CHANNELS["liquid_force"], found.force),
         "moment_N_m": (CHANNELS["liquid_moment"], found.moment),
         "surface_front_m": (CHANNELS["surface_front"], found.surface_front),
         "surface_rear_m": (CHANNELS["surface_rear"], found.surface_rear),
+    }
+    for place, rises in zip(found.watched.probe_places, found.watched.probes.T, strict=True):
+        name = f"surface_at_{place:.6g}"
+        columns[f"{name}_m"] = (Channel(name, "m", f"free-surface rise {place:.6g} m from the rear end wall"), rises)
+    return columns
+
+
+def _profiles(found: Excitation) -> Mapping[Channel, Array]:
+    """The surface along the tank: its times, its places and its rises (times, places), as they stand in the history."""
+    from slosh_cli.results.channels import Channel
+
+    watched = found.watched
+    return {
+        Channel("profile_time", "s", "times of the profiles of the surface"): watched.profile_times,
+        Channel("profile_place", "m", "places of the profiles, from the rear end wall"): watched.places,
+        Channel("profile_rise", "m", "free-surface rise, by time and place"): watched.profiles,
     }

@@ -29,6 +29,11 @@ _Modes = Annotated[int | None, option("--modes", "N", _MODES, min=1, max=20)]
 _PICTURES: Final = "Folder for a table (CSV) and pictures of the modes. Default: none are written."
 _LEVEL: Final = "Deceleration to reach, such as '0.2 g'."
 _RAMP: Final = "Reach it linearly within this time, then hold it. Default: at once."
+_MOTION: Final = (
+    "Motion of the tank instead: columns time_s and displacement_m, velocity_m_s or acceleration_m_s2, forward."
+)
+_START: Final = "With a motion: the liquid is at `rest` as it begins, or `moving` with the tank. Default: rest."
+_PROBE: Final = "Tell the surface at this distance from the rear wall, such as '0.05 m'; may be repeated."
 _COURSE: Final = "Deceleration over time instead: columns time_s and deceleration_m_s2, linear in between."
 
 tank_command = typer.Typer(help=_HELP, rich_markup_mode=None, no_args_is_help=True)
@@ -75,6 +80,9 @@ def _excite(
     duration: Annotated[str, typer.Option("--duration", metavar="TIME", help="Duration of the excitation.")] = "40 s",
     table: Annotated[Path | None, option("--table", "FILE.csv", _COURSE)] = None,
     interval: Annotated[str, typer.Option("--interval", metavar="TIME", help="Time between rows.")] = "10 ms",
+    motion: Annotated[Path | None, option("--motion", "FILE.csv", _MOTION)] = None,
+    start: Annotated[str | None, option("--start", "HOW", _START)] = None,
+    probe: Annotated[list[str] | None, option("--probe", "PLACE", _PROBE)] = None,
     overrides: Overrides = None,
     output: OutputFolder = None,
     as_json: AsJson = False,
@@ -91,7 +99,9 @@ def _excite(
     from slosh_cli.scenario import load_any_scenario
 
     scenario = load_given(load_any_scenario, scenario_file, overrides)
-    prescription = Prescription.read(deceleration, ramp, duration, table, interval, "--{}".format)
+    prescription = Prescription.read(
+        deceleration, ramp, duration, table, interval, "--{}".format, motion, start, probe or ()
+    )
     folder = folder_of_run(scenario, output, overrides, EXCITATION_FILES, note, prescription.settings)
     if scenario.tank.liquid.model in _KERNELS:
         announce_kernel("the liquid", 10, _KERNELS[scenario.tank.liquid.model])

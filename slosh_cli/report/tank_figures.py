@@ -64,6 +64,10 @@ def excitation_figure(excitation: Excitation, heading: Heading, room: float) -> 
     moment.set_ylabel("moment,\nnose-down / kN m")
     surface.plot(time, excitation.surface_front, **FRONT, label="front end wall")
     surface.plot(time, excitation.surface_rear, **REAR, label="rear end wall")
+    watched = excitation.watched
+    for number, (place, rises) in enumerate(zip(watched.probe_places, watched.probes.T, strict=True)):
+        look = _MODE_LOOKS[(number + 2) % len(_MODE_LOOKS)]
+        surface.plot(time, rises, **look, linewidth=1.2, label=f"{place:.4g} m from the rear wall")
     surface.set_ylabel("surface rise / m")
     if max(float(rise.max()) for rise in (excitation.surface_front, excitation.surface_rear)) > 0.4 * room:
         surface.axhline(room, color=MUTED, linewidth=1.4, linestyle=":", label=f"roof, {room:.2f} m above still level")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import h5py
 import numpy as np
 
-from slosh_cli.arrays import Vector
+from slosh_cli.arrays import Array, Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, SteadyFile, replacing
@@ -104,13 +104,16 @@ def write_excitation(
     channels: Mapping[Channel, Vector],
     facts: Mapping[str, Any],
     path: Path,
+    profiles: "Mapping[Channel, Array]",
 ) -> None:
     """Write the history of a tank alone: `channels` at `time` (s), the scenario, `facts` as root attributes.
+
+    `profiles` are data with axes of their own.
 
     The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
     """
     attributes = {"excitation_format_version": _FORMAT, **_circumstances(), **facts}
-    _write(path, scenario, time, channels, attributes)
+    _write(path, scenario, time, channels, attributes, profiles=profiles)
 
 
 def _write(
@@ -120,6 +123,7 @@ def _write(
     channels: Mapping[Channel, Vector],
     attributes: Mapping[str, Any],
     groups: "Mapping[str, _Group] | None" = None,
+    profiles: "Mapping[Channel, Array] | None" = None,
 ) -> None:
     """Write the file; it replaces the one at `path` when all of it is on the disk.
 
@@ -138,6 +142,8 @@ def _write(
                     _write_channel(part, info, values).dims[0].attach_scale(axis)
                 for key, value in group.attributes.items():
                     part.attrs[key] = value
+            for info, table in (profiles or {}).items():
+                _write_channel(file, info, table)
             file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
             for key, value in attributes.items():
                 file.attrs[key] = value
@@ -214,7 +220,7 @@ def _without_words(text: str) -> str:
     return re.sub(r"^(name|description):.*\n(?:[ \t].*\n|\n)*", "", text, flags=re.MULTILINE)
 
 
-def _write_channel(file: h5py.Group, info: Channel, values: Vector) -> h5py.Dataset:
+def _write_channel(file: h5py.Group, info: Channel, values: Array) -> h5py.Dataset:
     dataset = file.create_dataset(info.name, data=values, dtype="<f8")
     dataset.attrs["units"] = info.unit
     dataset.attrs["long_name"] = info.long_name

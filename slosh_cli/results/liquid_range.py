@@ -14,18 +14,23 @@ from slosh_cli.tank.still import frequency_excess
 
 FREQUENCY_LIMIT = 0.05
 """Shallow water is used where its first frequency is this close to potential flow's."""
+_SHIFT_LIMIT = 0.01
+"""Centres of mass that move by more than this part of the tank's length leave linear theory: B. Baeuerlein and K.
+Avila, J. Fluid Mech. 925 (2021) A22."""
 _SLOT_LIMIT = 0.1
 """A slot that may hold more than this part of the room above the liquid changes the surface elsewhere."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """How far a liquid moved: largest change of its level at an end wall, up or down, and largest head of pressure
-    under the roof, both m and not negative; whether the slot above the roof alone carried that head (`tank.roof`)."""
+    """How far a liquid moved, m: largest change of its level at an end wall, up or down, largest head of pressure under
+    the roof, and largest `shift` of its centre of mass where that was watched, none negative; whether the slot above
+    the roof alone carried that head (`tank.roof`)."""
 
     surface: float
     head: float = 0.0
     slot_alone: bool = True
+    shift: float | None = None
 
 
 def room_and_depth(tank: Tank) -> tuple[float, float]:
@@ -101,6 +106,8 @@ def _motion_checks(tank: Tank, motion: Motion, advice: str) -> Iterator[Check]:
             f"and {depth:.2f} m of liquid below: outside the linear theory of the modal liquid, which then overstates "
             f"the shift of weight. {advice}",
         )
+        if motion.shift is not None:
+            yield _shift_check(tank, motion.shift, advice)
     if tank.liquid.model == "shallow-water":
         yield Check(
             "head of pressure under the roof",
@@ -112,6 +119,18 @@ def _motion_checks(tank: Tank, motion: Motion, advice: str) -> Iterator[Check]:
         )
         if motion.slot_alone:
             yield _slot_check(tank, motion.head)
+
+
+def _shift_check(tank: Tank, shift: float, advice: str) -> Check:
+    """How far the centre of mass moves: beyond a hundredth of the length measured tanks leave linear theory."""
+    return Check(
+        "shift of the liquid's centre over the length of the tank",
+        "model",
+        shift / tank.length,
+        _SHIFT_LIMIT,
+        f"The liquid's centre of mass moves by {shift:.3g} m, {shift / tank.length:.1%} of the tank's length: beyond "
+        f"{_SHIFT_LIMIT:.0%} swayed tanks were measured to leave linear theory, above all near resonance. {advice}",
+    )
 
 
 def _slot_check(tank: Tank, head: float) -> Check:

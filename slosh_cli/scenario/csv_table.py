@@ -88,6 +88,19 @@ def read_table(path: Path, names: Sequence[str], judge: Callable[[Table], None] 
     return table
 
 
+def one_column(path: Path, choices: Sequence[str]) -> str:
+    """Which of `choices` the head of a CSV file has. Raises ScenarioError unless it is exactly one."""
+    text = _text_of(path)
+    separator, hints = _separator(text, choices)
+    line, head = next(_records(path, _Lines(text, hints), separator), (0, []))
+    found = [name for name in choices if name in head]
+    if len(found) != 1:
+        given = f"the head {plain(','.join(head))}" if head else "an empty file"
+        rule = f"must have exactly one of the columns {_listed(choices)}"
+        raise unreadable(path, rule, given, f"write one of them into the head, say `{choices[0]}`", line or None)
+    return found[0]
+
+
 def _text_of(path: Path) -> str:
     raw = bytes_of(path, _TABLE)
     if raw.startswith(b"PK\x03\x04") or raw.startswith(b"\xd0\xcf\x11\xe0"):

@@ -14,12 +14,14 @@ from typing import Protocol
 import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
+from slosh_cli.method import START
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.solver import excite_kernels
+from slosh_cli.solver.deceleration import Deceleration
+from slosh_cli.solver.watched import CellWatch, Watched, watched_modes
 from slosh_cli.tank.coefficients import SloshLiquid, SloshMode, SloshTank, slosh_modes
 from slosh_cli.tank.load import frozen_load
 from slosh_cli.tank.modal import modal_liquid
-from slosh_cli.tank.shallow import WORK_ROWS
 from slosh_cli.tank.still import FlowingLiquid, TransverseWall, shallow_liquid
 
 _WHOLE = 1.0
@@ -33,69 +35,6 @@ MOST_STEPS = 20_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Deceleration:
-    """A deceleration that is linear between `times` (k,) s, where it has `values` (k,) m/s^2.
-
-    It is zero before the first time and keeps the last value after the last one. Times must not fall; a time given
-    twice is a jump. Raises ValueError where these rules are broken.
-    """
-
-    times: Vector
-    values: Vector
-
-    def __post_init__(self) -> None:
-        if self.times.ndim != 1 or self.times.shape != self.values.shape or not self.times.size:
-            raise ValueError("times and values must be of one length, at least 1")
-        if not (np.isfinite(self.times).all() and np.isfinite(self.values).all()):
-            raise ValueError("times and values must be finite")
-        if np.any(np.diff(self.times) < 0.0):
-            raise ValueError("times must not fall")
-
-    @classmethod
-    def ramped(cls, level: float, ramp: float = 0.0) -> Deceleration:
-        """Linear from 0 to `level` (m/s^2) within `ramp` (s) from t = 0, then held; without a ramp a step."""
-        points = [(0.0, 0.0), (ramp, level)] if ramp > 0.0 else [(0.0, level)]
-        return cls.table(points)
-
-    @classmethod
-    def table(cls, points: Sequence[tuple[float, float]]) -> Deceleration:
-        """Through points (s, m/s^2)."""
-        times, values = np.array(points, dtype=np.float64).reshape(-1, 2).T
-        return cls(times, values)
-
-    def after(self, instants: Vector) -> Vector:
-        """Values in m/s^2 at `instants` (s), just after a jump where there is one."""
-        return self._at(instants, "right")
-
-    def before(self, instants: Vector) -> Vector:
-        """The same just before a jump."""
-        return self._at(instants, "left")
-
-    def speed_lost(self, instants: Vector) -> Vector:
-        """Integral in m/s up to `instants` (s)."""
-        times, values = self.times, self.values
-        sums = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(times) * (values[1:] + values[:-1]))])
-        k = np.searchsorted(times, instants, "right") - 1
-        reached = np.clip(k, 0, None)
-        more = 0.5 * (instants - times[reached]) * (values[reached] + self.after(instants))
-        return np.where(k < 0, 0.0, sums[reached] + more)
-
-    def largest(self, duration: float) -> float:
-        """Largest absolute value in m/s^2 from t = 0 to `duration` (s)."""
-        ends = np.array([0.0, duration])
-        inside = np.abs(self.values[(self.times >= 0.0) & (self.times <= duration)])
-        return float(np.max([*inside, *np.abs(self.after(ends)), *np.abs(self.before(ends[1:]))]))
-
-    def _at(self, instants: Vector, side: str) -> Vector:
-        times, values = self.times, self.values
-        k = np.searchsorted(times, instants, "left" if side == "left" else "right") - 1
-        reached, following = np.clip(k, 0, None), np.clip(k + 1, None, times.size - 1)
-        span = times[following] - times[reached]
-        part = np.where(span > 0.0, (instants - times[reached]) / np.where(span > 0.0, span, 1.0), 0.0)
-        return np.where(k < 0, 0.0, values[reached] + part * (values[following] - values[reached]))
-
-
-@dataclass(frozen=True, eq=False)
 class Excitation:
     """What the liquid of a whole tank does to it, at `time` (n,) s under `deceleration` (n,) m/s^2.
 
@@ -105,7 +44,8 @@ class Excitation:
     liquid, `largest_deceleration` m/s^2, `mass_error` the largest change of the liquid's mass, as a share of it;
     `largest_head` m the largest head of a shallow-water liquid under the roof, zero where it never ran full;
     `accuracy` is what the modes' histories still changed by with the last halving of the steps, relative, and zero for
-    the other liquids. `reason` says why the history ends early, empty when it does not.
+    the other liquids. `reason` says why the history ends early, empty when it does not. `watched`
+    is what was seen of the liquid inside the tank.
     """
 
     time: Vector
@@ -114,6 +54,7 @@ class Excitation:
     moment: Vector
     surface_front: Vector
     surface_rear: Vector
+    watched: Watched
     mass: float
     largest_deceleration: float
     mass_error: float = 0.0
@@ -152,24 +93,30 @@ class _ExcitedTank(SloshTank, Protocol):
 
 
 def excite(
-    tank: _ExcitedTank, deceleration: Deceleration, duration: float = 40.0, interval: float = 0.01
+    tank: _ExcitedTank,
+    deceleration: Deceleration,
+    duration: float = 40.0,
+    interval: float = 0.01,
+    probes: Sequence[float] = (),
 ) -> Excitation:
-    """Move the tank, at rest and its liquid level at t = 0, through `duration` s; a row every `interval` s.
+    """Move the tank, its liquid level at t = 0, through `duration` s; a row every `interval` s.
 
-    Raises TankError where slosh modes cannot be computed, ValueError for a duration or an interval that is not
-    positive or a deceleration that is zero throughout.
+    `probes` are places where the surface is watched, m from the rear wall. Raises TankError where slosh modes cannot be
+    computed, ValueError for a duration or an interval that is not positive, a deceleration that is zero throughout or a
+    probe outside the tank.
     """
+    if not all(0.0 <= place <= tank.length for place in probes):
+        raise ValueError(f"probes must lie within the {tank.length} m of the tank, but {probes} m were given")
     if not (duration > 0.0 and 0.0 < interval < math.inf and duration < math.inf):
         raise ValueError(f"duration and interval must be positive, but {duration} and {interval} s were given")
-    largest = deceleration.largest(duration)
-    if largest == 0.0:
+    if deceleration.largest(duration) == 0.0:
         raise ValueError("the deceleration must not be zero throughout")
     time = _instants(deceleration, duration, interval)
     given = deceleration.after(time)
     given[-1] = deceleration.before(time[-1:])[0]
     if tank.liquid.model == "shallow-water":
-        return _excite_cells(tank, deceleration, time, given, largest)
-    return _excite_modes(tank, deceleration, time, given, largest)
+        return _excite_cells(tank, deceleration, time, given, probes)
+    return _excite_modes(tank, deceleration, time, given, probes)
 
 
 def _instants(deceleration: Deceleration, duration: float, interval: float) -> Vector:
@@ -193,10 +140,10 @@ def _with_corners(deceleration: Deceleration, instants: Vector) -> Vector:
 
 
 def _excite_modes(
-    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
+    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, probes: Sequence[float]
 ) -> Excitation:
-    load = frozen_load(tank)
-    rows, accuracy = _settled_history(slosh_modes(tank), deceleration, time)
+    load, modes = frozen_load(tank), slosh_modes(tank)
+    rows, accuracy = _settled_history(modes, deceleration, time)
     return Excitation(
         time=time,
         deceleration=given,
@@ -204,14 +151,17 @@ def _excite_modes(
         moment=load.mass * load.centre_height * given + rows[:, 1],
         surface_front=rows[:, 2],
         surface_rear=-rows[:, 2],
+        watched=watched_modes(modes, load.mass, tank.length, time, rows[:, 3:], probes),
         mass=load.mass,
-        largest_deceleration=largest,
+        largest_deceleration=deceleration.largest(float(time[-1])),
         accuracy=accuracy,
     )
 
 
 def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, time: Vector) -> tuple[Matrix, float]:
-    """Slosh force, moment and front rise (n, 3) at `time`, and their relative change with the last halving.
+    """Slosh force, moment, front rise and amplitudes (n, 3 + modes) at `time`, and how far they have settled.
+
+    That is the relative change of the first three with the last halving.
 
     Histories of steps h and h/2 are combined so that their errors of order h^2 cancel (L. F. Richardson).
     """
@@ -224,8 +174,9 @@ def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, tim
     steps = np.maximum(np.ceil(lengths * fastest / FIRST_PHASE), 1.0).astype(np.int64)
 
     def history(halvings: int) -> Matrix:
-        rows = np.zeros((ends.size, 3))
+        rows = np.zeros((ends.size, 3 + len(modes)))
         liquid = modal_liquid(modes, STANDARD_GRAVITY, _WHOLE)
+        liquid.rate[START] = -deceleration.blow * liquid.lambda_1 / liquid.mu
         excite_kernels.modal_history(liquid, lengths, first, last, steps * 2**halvings, rows)
         return rows[wanted]
 
@@ -236,21 +187,21 @@ def _settled_history(modes: Sequence[SloshMode], deceleration: Deceleration, tim
         coarse, fine = fine, history(halvings)
         previous, combined = combined, (4.0 * fine - coarse) / 3.0
         size = np.maximum(np.abs(combined).max(axis=0), np.finfo(float).tiny)
-        change = float((np.abs(combined - previous).max(axis=0) / size).max())
+        change = float((np.abs(combined - previous).max(axis=0) / size)[:3].max())
     return combined, change
 
 
 def _excite_cells(
-    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, largest: float
+    tank: _ExcitedTank, deceleration: Deceleration, time: Vector, given: Vector, probes: Sequence[float]
 ) -> Excitation:
-    liquid, (area, flow, depth) = shallow_liquid(tank, STANDARD_GRAVITY, _WHOLE, columns=True)
+    liquid, cells = shallow_liquid(tank, STANDARD_GRAVITY, _WHOLE, columns=True)
+    cells[1][:] = -deceleration.blow * cells[0]
     borders = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])
     ends = _with_corners(deceleration, np.union1d(time, borders))
     lengths = np.diff(ends)
     means = np.diff(deceleration.speed_lost(ends)) / lengths
-    rows = np.zeros((lengths.size, 6))
-    work = np.zeros((WORK_ROWS, liquid.cells + 1))
-    done = excite_kernels.cells_history(liquid, area, flow, depth, lengths, means, work, np.zeros(4), rows)
+    watch = CellWatch(liquid, time, np.array(probes, dtype=np.float64))
+    rows, done = watch.carry(cells, ends, means)
     last = int(np.searchsorted(borders, ends[done], "right")) - 1  # as many rows as have their whole interval
     sums = np.concatenate([np.zeros((1, 2)), np.cumsum(rows[:, :2], axis=0)])
     spans = np.diff(borders[: last + 1])
@@ -266,8 +217,9 @@ def _excite_cells(
         moment=moment,
         surface_front=front,
         surface_rear=rear,
+        watched=watch.seen(last),
         mass=liquid.mass,
-        largest_deceleration=largest,
+        largest_deceleration=deceleration.largest(float(time[-1])),
         mass_error=float(np.abs(rows[:done, 4] / volume - 1.0).max(initial=0.0)),
         largest_head=float(np.max(rows[:done, 5] - liquid.table.depth[-1], initial=0.0)),
         reason=reason,

@@ -199,8 +199,13 @@ def test_a_table_that_is_none_is_named_with_its_line(slosh: Slosh, tmp_path: Pat
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ((), "--deceleration '0.2 g', or --table"),
-        (("--deceleration", "1 g", "--table", "x.csv"), "--deceleration '0.2 g', or --table"),
+        ((), "--deceleration '0.2 g', --table FILE.csv or --motion FILE.csv"),
+        (("--deceleration", "1 g", "--table", "x.csv"), "--deceleration '0.2 g', --table FILE.csv or"),
+        (("--deceleration", "1 g", "--start", "rest"), "--start goes with --motion"),
+        (("--deceleration", "1 g", "--motion", "x.csv"), "leave out --deceleration, --ramp, --table"),
+        (("--motion", "nowhere.csv"), "nowhere.csv: must exist"),
+        (("--deceleration", "1 g", "--probe", "5.76 m"), "the front wall (5.75 m); given 5.76 m"),
+        (("--deceleration", "1 g", "--probe", "1 kg"), "which is a mass"),
         (("--deceleration", "0.2"), "`0.2` without a unit"),
         (("--deceleration", "0.2 m/s"), "which is a speed"),
         (("--deceleration", "0 g"), "must be decelerated"),
@@ -229,6 +234,91 @@ def test_a_chart_has_a_row_per_filling_and_mode(slosh: Slosh, tmp_path: Path) ->
         "fill_chart.png",
         "fill_chart.svg",
     }
+
+
+def motion_file(folder: Path, column: str, values: np.ndarray, time: np.ndarray) -> Path:
+    rows = "".join(f"{t:.9g},{value:.12g}\n" for t, value in zip(time, values, strict=True))
+    (folder / f"{column}.csv").write_text(f"time_s,{column}\n{rows}", encoding="utf-8")
+    return folder / f"{column}.csv"
+
+
+def test_a_motion_is_the_same_by_place_speed_and_acceleration(slosh: Slosh, tmp_path: Path) -> None:
+    time = np.linspace(0.0, 8.0, 1601)
+    courses = {
+        "displacement_m": 0.1 * np.sin(1.2 * time),
+        "velocity_m_s": 0.12 * np.cos(1.2 * time),
+        "acceleration_m_s2": -0.144 * np.sin(1.2 * time),
+    }
+    peaks = {}
+    for column, values in courses.items():
+        file = motion_file(tmp_path, column, values, time)
+        words = ("--motion", file, "--duration", "8 s", "--json", *COMPUTED)
+        for start in ("rest", "moving"):
+            found = answer(slosh("tank", "excite", HALF, *words, "--start", start))
+            peaks[column, start] = (found["max_surface_m"], found["max_moment_N_m"])
+    reference = peaks["acceleration_m_s2", "moving"]
+    assert peaks["acceleration_m_s2", "rest"] == reference
+    for column in ("displacement_m", "velocity_m_s"):
+        assert peaks[column, "moving"] == pytest.approx(reference, rel=2e-3)
+    at_rest = [peaks[column, "rest"] for column in ("displacement_m", "velocity_m_s")]
+    assert at_rest[0] == pytest.approx(at_rest[1], rel=2e-3)
+    assert abs(at_rest[0][0] / reference[0] - 1) > 0.2
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("time_s,place\n0,0\n1,1\n", "must have exactly one of the columns"),
+        ("time_s,displacement_m,velocity_m_s\n0,0,0\n1,1,1\n", "must have exactly one of the columns"),
+        ("time_s,velocity_m_s\n1,0\n2,1\n", "must begin at 0 s"),
+        ("time_s,velocity_m_s\n0,0\n0,1\n", "must rise from row to row"),
+        ("time_s,displacement_m\n0,0\n1,1\n", "needs at least 4 rows; given 2"),
+        ("time_s,velocity_m_s\n0,1\n1,1\n", "must be decelerated at some time"),
+    ],
+)
+def test_motions_that_are_none(slosh: Slosh, tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "motion.csv").write_text(text, encoding="utf-8")
+    outcome = slosh("tank", "excite", HALF, "--motion", "motion.csv", "--json")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert said in outcome.out
+
+
+def test_a_start_that_is_none(slosh: Slosh, tmp_path: Path) -> None:
+    motion_file(tmp_path, "velocity_m_s", np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+    outcome = slosh("tank", "excite", HALF, "--motion", "velocity_m_s.csv", "--start", "now", "--json")
+    assert "--start must be rest or moving; given `now`" in outcome.out
+
+
+@pytest.mark.parametrize("model", ["modal", "shallow-water"])
+def test_probes_and_profiles_are_the_surface_between_the_walls(slosh: Slosh, tmp_path: Path, model: str) -> None:
+    words = ("--deceleration", "0.2 m/s^2", "--duration", "5 s", *COMPUTED, "--set", f"tank.liquid.model={model}")
+    probes = ("--probe", "0 m", "--probe", "2.875 m", "--probe", "5.75 m")
+    found = answer(slosh("tank", "excite", HALF, *words, *probes, "-o", "here", "--json"))
+    with h5py.File(found["files"]["history"]) as file:
+        assert np.allclose(file["surface_at_0"], file["surface_rear"], atol=1e-12)
+        assert np.allclose(file["surface_at_5.75"], file["surface_front"], atol=1e-12)
+        assert np.abs(file["surface_at_2.875"][()]).max() < 0.1 * np.abs(file["surface_front"][()]).max()
+        time, place, rise = (file[f"profile_{name}"][()] for name in ("time", "place", "rise"))
+        assert rise.shape == (time.size, place.size)
+        assert rise[:, -1] == pytest.approx(np.interp(time, file["time"], file["surface_front"]), abs=1e-9)
+        # the liquid's weight does the moment but for its height: force and shift of one history belong together
+        shift = file["liquid_shift"][()]
+        assert shift.max() > 0.0
+        assert np.corrcoef(shift, file["surface_front"])[0, 1] > 0.98
+    assert "2.875 m from the rear wall" in (tmp_path / "here" / "excite.svg").read_text(encoding="utf-8")
+    assert "surface_at_2.875_m" in rows_of(tmp_path / "here" / "excite.csv")[0]
+
+
+def test_a_centre_that_moves_by_a_hundredth_of_the_length_is_beyond_linear_theory(slosh: Slosh) -> None:
+    words = ("--ramp", "5 s", "--duration", "10 s", "--json", *COMPUTED)
+    gentle, firm = (
+        answer(slosh("tank", "excite", HALF, "--deceleration", f"{level} m/s^2", *words)) for level in (0.03, 0.2)
+    )
+    name = "shift of the liquid's centre over the length of the tank"
+    shifts = [next(check["value"] for check in found["checks"] if check["check"] == name) for found in (gentle, firm)]
+    assert shifts[0] < 0.01 < shifts[1]
+    assert not any("leave linear theory" in warning for warning in gentle["warnings"])
+    assert any("leave linear theory" in warning for warning in firm["warnings"])
 
 
 @pytest.mark.parametrize("fills", ["0.01", "0.5,1.2", "half", "0.1:0.9", "0.5 m", ""])
