@@ -23,6 +23,8 @@ NAMES: Final = (
     "critical-speed",
     "mem-vs-fem",
     "interfoam",
+    "cfd",
+    "measured",
     "hertz",
     "polach",
     "point-mass",

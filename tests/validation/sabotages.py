@@ -52,6 +52,23 @@ SABOTAGES: dict[str, Sabotage] = {
         "=0.8 * (depth * area - first)",
         "force",
     ),
+    "cfd_pressure": edit(
+        "cfd",
+        "tank.section_table",
+        "section_table",
+        "=depth * area - first",
+        "=0.8 * (depth * area - first)",
+        "force over m a, cylinder",
+    ),
+    "measured_lambda_1": edit("measured", *MODE, "along * 2.0 * kappa", "along * kappa", "centre of mass, swayed"),
+    "measured_pressure": edit(
+        "measured",
+        "tank.section_table",
+        "section_table",
+        "=depth * area - first",
+        "=0.8 * (depth * area - first)",
+        "the bore is early",
+    ),
     "moving_load_tension": edit(
         "moving-load", *STEADY, "rail.mass * speed**2", "2 * rail.mass * speed**2", "deflection"
     ),
