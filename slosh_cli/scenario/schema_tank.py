@@ -40,6 +40,11 @@ class Liquid(Part):
         default=30.0,
         description="Speed of pressure waves where the section runs full (shallow-water), m/s: higher is stiffer.",
     )
+    dispersion: Annotated[Literal["on", "off"], Choice(("on", "off"))] = Field(
+        default="off",
+        description="`on`: the shallow-water model with the motion across the section, by which shorter waves run "
+        "slower and a part of the liquid rides along at once.",
+    )
 
 
 class Coefficient(Part):

@@ -91,12 +91,13 @@ class CellLiquid(Slosh):
         paid_over = max(step, self.last_step)
         force = sums[0] / step + self.left_force / paid_over - weight * pitch
         moment = sums[1] / step + self.left_moment / paid_over
-        self.following, self.held_force, self.held_moment = 0.0, force, moment
+        self.following, self.held_force, self.held_moment = liquid.riding, force, moment
         if heaviness > _LOOSE:
             change = (force - self.start_force) * self.by_force + (moment - self.start_moment) * self.by_moment
-            centre_before = ride.acceleration[START] + centre * ride.pitch_acceleration[START]
             if not _follow(self, step, acceleration, change / (1.0 + heaviness), force, moment):
                 return False, 0.0, 0.0
+        if self.following > 0.0:
+            centre_before = ride.acceleration[START] + centre * ride.pitch_acceleration[START]
             taken = (self.held_force - self.start_force) * self.by_force
             taken += (self.held_moment - self.start_moment) * self.by_moment
             taken *= self.following / (1.0 + self.following * lightness)

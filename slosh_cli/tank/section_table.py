@@ -38,6 +38,8 @@ class SectionTable(Block):
     first: Vector
     pressure: Vector
     pressure_arm: Vector
+    across: Vector
+    gain: Vector
     depth_start: Integers
     area_start: Integers
     slot_width: float
@@ -72,6 +74,22 @@ def _starts(places: Vector) -> Integers:
     return np.asarray(np.maximum(found - 1, 0), dtype=np.int64)
 
 
+def _across(depth: Vector, area: Vector, width: Vector) -> tuple[Vector, Vector]:
+    """`beta` (m^4) of the motion across a section filled to its depths, and `A beta' - beta`, each (K,).
+
+    All at one height is taken to sink alike, and to move sideways in proportion to its distance from the middle, as
+    wide as the wall goes there. No such flow has less energy than the potential flow (Kelvin's theorem); in a half-full
+    cylinder it has 3 % more.
+    """
+    span, mean = np.diff(depth), 0.5 * (width[1:] + width[:-1])
+    widening = np.where(span > 10 * LEDGE * depth[-1], np.diff(width) / span, 0.0)  # ledges are steps, not slopes
+    areas = (area[1:] ** 2 + area[1:] * area[:-1] + area[:-1] ** 2) / 3.0
+    rates = areas / mean * (1.0 + widening**2 / 12.0)
+    across = np.concatenate([[0.0], np.cumsum(rates * span)])
+    rate = np.interp(depth, 0.5 * (depth[1:] + depth[:-1]), rates)
+    return across, area / np.maximum(width, mean[-1]) * rate - across
+
+
 def section_table(section: Section, gravity: float, slot_speed: float) -> SectionTable:
     """Tabulate `section`; pressure waves in the full section run at `slot_speed` (m/s). Gravity in m/s^2."""
     slot_width = gravity * section.area(section.height) / slot_speed**2
@@ -84,6 +102,7 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
     width[0] = section.surface_width(1e-12 * section.height)  # the limit from inside, as at the top
     width[-1] = max(slot_width, section.surface_width(top * (1 - 1e-9)))
     first = area * centroid
+    across, gain = _across(depth, area, width)
     return SectionTable(
         depth=depth,
         area=area,
@@ -91,6 +110,8 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         first=first,
         pressure=depth * area - first,
         pressure_arm=depth * first - second,
+        across=across,
+        gain=gain,
         depth_start=_starts(depth),
         area_start=_starts(area),
         slot_width=slot_width,
@@ -166,6 +187,19 @@ def section_at(table, depth):
     area, width = _cubic(depths, areas, table.width, k, depth)
     pressure, _ = _cubic(depths, pressures, areas, k, depth)
     return area, pressure, max(width, 1e-12)
+
+
+@kernel
+def across_at(table, depth):
+    """`across` and `gain` (m^4) at a depth; none where the section runs full, as the roof lets nothing rise."""
+    depths = table.depth
+    last = depths.size - 1
+    if depth <= 0.0 or depth >= depths[last]:
+        return 0.0, 0.0
+    k = _node(depths, table.depth_start, depth)
+    part = (depth - depths[k]) / (depths[k + 1] - depths[k])
+    across = table.across[k] + part * (table.across[k + 1] - table.across[k])
+    return across, table.gain[k] + part * (table.gain[k + 1] - table.gain[k])
 
 
 @kernel

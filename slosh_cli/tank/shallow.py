@@ -12,9 +12,10 @@ import math
 from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.dispersion import DISPERSION_ROWS, across_energy
 from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
-from slosh_cli.tank.shallow_flux import fluxes
+from slosh_cli.tank.shallow_flux import DRY, fluxes
 
 _COURANT = 0.45
 """A step carries no wave further than this part of a cell."""
@@ -22,7 +23,7 @@ _MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
 _SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
-WORK_ROWS = 18
+WORK_ROWS = 18 + DISPERSION_ROWS
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
 _FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area
@@ -35,7 +36,8 @@ class ShallowLiquid(Block):
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
     liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
     face, zero where there is none and infinite where it is closed. `columns`: whether cells that run full up to a
-    wall stand still (`roof`).
+    wall stand still (`roof`). `disperses`: whether the motion across the section counts (`dispersion`), and `riding` kg
+    is then what rides along at once with the tank of the still liquid.
     """
 
     cells: int
@@ -48,6 +50,8 @@ class ShallowLiquid(Block):
     loss: Vector
     table: SectionTable
     columns: int
+    disperses: int
+    riding: float
 
 
 @kernel
@@ -150,6 +154,9 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
         if depth[i] >= liquid.table.depth[liquid.table.depth.size - 1]:  # it may be a column's, under another tilt
             depth[i] = depth_of(liquid.table, area[i])
     stand_still(liquid, area, depth, acceleration, still)
+    if liquid.disperses:
+        _, lifted = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
+        sums[1] -= lifted
     remaining = duration
     while remaining > 0.0:
         speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
@@ -181,6 +188,9 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             _stop(liquid, stop_columns(liquid, flow, still, step), sums)
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0
+    if liquid.disperses:
+        _, lifted = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
+        sums[1] += lifted
     return True
 
 
@@ -192,4 +202,7 @@ def liquid_energy_in_tank(liquid, area, flow, depth):
         if area[i] > 0.0:
             kinetic += 0.5 * flow[i] * flow[i] / area[i]
         potential += liquid.gravity * potential_at(liquid.table, stored_level(liquid.table, area[i], depth[i]))
-    return liquid.density * liquid.spacing * kinetic, liquid.density * liquid.spacing * potential
+    across = 0.0
+    if liquid.disperses:
+        across, _ = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
+    return across + liquid.density * liquid.spacing * kinetic, liquid.density * liquid.spacing * potential

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.dispersion import disperse
 from slosh_cli.tank.roof import column_push
 from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
 
@@ -208,5 +209,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
     after, before = (1.0 - still[0]) * momentum[0], (1.0 - still[cells - 1]) * momentum[cells]
     push[0] += before - after
     push[1] += before * pressure_height(table, depth[cells - 1]) - after * pressure_height(table, depth[0])
+    if liquid.disperses:
+        disperse(liquid, area, flow, depth, still, dry, work[18:], mass, momentum, source, push)
     column_push(liquid, area, acceleration, momentum, still, push)
     return max(fastest, signal) if still[cells - 1] == 0.0 else fastest

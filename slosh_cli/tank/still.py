@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -15,8 +15,13 @@ from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
 from slosh_cli.tank.section_table import section_table
-from slosh_cli.tank.shallow import ShallowLiquid
+from slosh_cli.tank.shallow import WORK_ROWS, ShallowLiquid
+from slosh_cli.tank.shallow_flux import fluxes
 
+_GENTLE = 1e-3
+"""An acceleration (m/s^2) that moves the surface little."""
+_LONG_WAVES = 1e-3
+"""Waves are long where their frequency squared is by less than that part lower than shallow water's."""
 CellColumns = tuple[Array, Array, Array]
 """Area m^2, flow m^3/s and depth m of every cell."""
 
@@ -31,6 +36,10 @@ class FlowingLiquid(LoadedLiquid, Protocol):
     @property
     def slot_speed(self) -> float:
         """Speed of pressure waves where the section runs full, m/s."""
+
+    @property
+    def dispersion(self) -> Literal["on", "off"]:
+        """Whether the motion across the section counts."""
 
 
 class TransverseWall(Protocol):
@@ -67,6 +76,7 @@ def shallow_liquid(
     """
     section, load = section_of(tank), frozen_load(tank)
     depth, cells = tank.fill * section.height, tank.liquid.cells
+    disperses = tank.liquid.dispersion == "on"
     liquid = ShallowLiquid(
         cells=cells,
         spacing=tank.length / cells,
@@ -78,8 +88,43 @@ def shallow_liquid(
         loss=_baffle_losses(tank),
         table=section_table(section, gravity, tank.liquid.slot_speed),
         columns=int(columns),
+        disperses=int(disperses),
+        riding=0.0,
     )
-    return liquid, (np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth))
+    columns_at_rest = np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth)
+    if disperses:
+        part = _motion_across(tank, liquid, gravity)
+        liquid.table.across[:] *= part
+        liquid.table.gain[:] *= part
+        liquid.riding = _riding(liquid, columns_at_rest)
+    return liquid, columns_at_rest
+
+
+def _riding(liquid: ShallowLiquid, cells: CellColumns) -> float:
+    """Mass (kg) by which the still liquid resists a tank that starts to move."""
+    work, push = np.zeros((WORK_ROWS, liquid.cells + 1)), np.zeros(2)
+    mass, momentum, source, still = np.zeros((4, liquid.cells + 1))
+    fluxes(liquid, *cells, still, -_GENTLE, work, mass, momentum, source, push)
+    return float(push[0]) * liquid.density / _GENTLE
+
+
+def _motion_across(tank: _FlowingTank, liquid: ShallowLiquid, gravity: float) -> float:
+    """The inertia of the motion across the section over the table's, so that the first slosh mode has its frequency.
+
+    With `omega^2 (1 + k^2 beta/A) = g k^2 A/B`, for the longest part between closed bulkheads. 1 where the section has
+    no finite-element mesh, and where waves are so long that the frequency hardly tells.
+    """
+    table, section = liquid.table, section_of(tank)
+    area, width = section.area(liquid.still_depth), section.surface_width(liquid.still_depth)
+    wavenumber = math.pi / longest_section(tank)
+    inertia = float(np.interp(liquid.still_depth, table.depth, table.across)) * wavenumber**2 / area
+    if not inertia > _LONG_WAVES:
+        return 1.0
+    try:
+        mode = longitudinal_modes(section, liquid.still_depth, longest_section(tank)).modes[0]
+    except TankError:
+        return 1.0
+    return (gravity * wavenumber**2 * area / width / mode.frequency**2 - 1.0) / inertia
 
 
 def longest_section(tank: _FlowingTank) -> float:
