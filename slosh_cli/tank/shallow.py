@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 
-from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.baffle import Baffles
 from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import fluxes
@@ -33,9 +33,8 @@ class ShallowLiquid(Block):
     """Constants of the liquid in a tank cut into `cells` of `spacing` (m).
 
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
-    liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
-    face, zero where there is none and infinite where it is closed. `columns`: whether cells that run full up to a
-    wall stand still (`roof`).
+    liquid above the bottom, `mass` kg, `still_depth` m; `baffles` are the walls between cells. `columns`: whether cells
+    that run full up to a wall stand still (`roof`).
     """
 
     cells: int
@@ -45,7 +44,7 @@ class ShallowLiquid(Block):
     centre_height: float
     mass: float
     still_depth: float
-    loss: Vector
+    baffles: Baffles
     table: SectionTable
     columns: int
 
