@@ -8,6 +8,7 @@ from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Tank
 from slosh_cli.scenario.schema_limits import Limits
 from slosh_cli.section import liquid_depth, section_of
+from slosh_cli.tank.still import open_share
 
 _ROUNDING = 1e-6
 """Parts of a limit that a filling may miss by: amounts are written with few digits, and the fill follows from them."""
@@ -53,7 +54,7 @@ def _surge_check(tank: Tank, limits: Limits) -> Check:
 def _largest_part(tank: Tank, limits: Limits) -> float:
     """Capacity (m^3) of the largest part between end walls and baffles that are hardly open."""
     section = section_of(tank)
-    walls = sorted(wall.position for wall in tank.baffles if wall.opening <= limits.wall_opening)
+    walls = sorted(wall.position for wall in tank.baffles if open_share(wall, section) <= limits.wall_opening)
     longest = max(end - start for start, end in pairwise([0.0, *walls, tank.length]))
     return section.area(section.height) * longest
 

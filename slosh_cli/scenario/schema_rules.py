@@ -24,6 +24,8 @@ _WIDEST_SLOT: Final = 0.2
 _USUAL_SLOT_SPEED: Final = 30.0
 """The default of the slot's speed, m/s."""
 _MOST_ELEMENTS: Final = 20_000
+_ROUNDING: Final = 1e-9
+"""Of the tank's height: an edge of a baffle's opening may lie so far beyond the roof."""
 _MOST_ROWS: Final = 2_000_000
 
 
@@ -178,6 +180,28 @@ def _baffles(v: Values) -> Iterator[Finding]:
             yield Finding(path, rule, given, f"write a place between {between}, a cell or more from the others")
 
 
+def _openings(v: Values) -> Iterator[Finding]:
+    extent = _tank_extent(v)
+    for place, baffle in enumerate(v.get("tank.baffles", ())):
+        path = ("tank", "baffles", place, "openings")
+        if v.wrote(f"tank.baffles.{place}.openings") and not baffle.openings:
+            fix = "write `opening: 0` for a closed bulkhead, or `openings: [{from: 0 m, to: 0.6 m}]`"
+            yield Finding(path, "must have at least one opening", "an empty list", fix)
+        highest = 0.0
+        for number, (low, high) in sorted(enumerate(baffle.bands), key=lambda entry: entry[1]):
+            given = f"from {_metres(low)} to {_metres(high)}"
+            if low >= high:
+                yield Finding((*path, number, "to"), "must lie above `from`", given, "write the higher edge as `to`")
+            elif extent is not None and high > extent[1] * (1.0 + _ROUNDING):
+                rule = f"must lie in the {shown(extent[1])} m high tank"
+                yield Finding((*path, number, "to"), rule, given, f"write `{at_most(extent[1])} m` or less")
+            elif low < highest:
+                rule = f"must not overlap another opening, which reaches up to {shown(highest)} m"
+                fix = f"write `{shown(highest)} m` or more, or make one opening of the two"
+                yield Finding((*path, number, "from"), rule, given, fix)
+            highest = max(highest, high)
+
+
 def _slot(v: Values) -> Iterator[Finding]:
     """Pressure waves at c need a slot of width `g A/c^2`, the part `g H/c^2` of the mean width A/H."""
     key, extent = "tank.liquid.slot_speed", _tank_extent(v)
@@ -231,7 +255,7 @@ def _dimension_key(v: Values, name: str) -> str:
     return next(key for key in keys if v.has(key))
 
 
-_TANK_RULES: Final = (_coefficients, _baffles, _slot, fits_tank)
+_TANK_RULES: Final = (_coefficients, _baffles, _openings, _slot, fits_tank)
 ALONE_RULES: Final = (*_TANK_RULES, no_wagon)
 STOP_RULES: Final = (
     *_TANK_RULES,

@@ -1,10 +1,10 @@
 """The tank: shape, filling, liquid and slosh coefficients."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, create_model
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.amounts import AMOUNTS, FILLS, fill_of, wanted_volume
@@ -94,15 +94,46 @@ _Coefficients: TypeAlias = Annotated[
 ]
 
 
+_HEIGHT = Quantity("length", Range(0.0, 20.0), "0.6 m")
+_FROM: dict[str, Any] = {  # a key that cannot be written as a class has its fields
+    "from": (
+        Annotated[float, replace(_HEIGHT, example="0 m")],
+        Field(description="Lower edge above the tank's bottom, m."),
+    )
+}
+_Ends: Any = create_model("_Ends", __base__=Part, __doc__="What has a lower edge.", **_FROM)
+
+
+class Opening(_Ends):  # type: ignore[misc]
+    """A part of a baffle's height that is open over the full width of the section."""
+
+    to: Annotated[float, _HEIGHT] = Field(description="Upper edge above the tank's bottom, m; at most the roof.")
+
+
 class Baffle(Part):
-    """A transverse wall, closed or with an opening, for the shallow-water model."""
+    """A transverse wall, closed, perforated or with openings, for the shallow-water model."""
+
+    exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = (("opening", "openings"),)
 
     position: Annotated[float, Quantity("length", Range(0.0, 200.0), "5 m")] = Field(
         description="Distance from the rear end wall, m; taken to the nearest face between cells."
     )
-    opening: Annotated[float, Number(Range(0.0, 1.0), "0.3")] = Field(
-        description="Open part of the wall's area, from 0 (a closed bulkhead) to 1 (no wall)."
+    opening: Annotated[float | None, Number(Range(0.0, 1.0), "0.3")] = Field(
+        default=None,
+        description="Open part of the area of an evenly perforated wall, from 0 (a closed bulkhead) to 1 (no wall).",
     )
+    openings: tuple[Opening, ...] = Field(
+        default=(), description="Where the wall is open, in place of `opening`: heights that do not overlap."
+    )
+
+    @property
+    def bands(self) -> tuple[tuple[float, float], ...]:
+        """From where to where the wall is open, m above the tank's bottom."""
+        return tuple((getattr(opening, "from"), opening.to) for opening in self.openings)
+
+    def unwritten(self, *, as_text: bool) -> Collection[str]:  # noqa: ARG002 - as everywhere
+        """The way of the two that the wall is not told."""
+        return ("openings",) if self.opening is not None else ("opening",)
 
 
 class TankBase(Aliased):

@@ -17,7 +17,7 @@ from slosh_cli.scenario.train_file import TrainScenario
 if TYPE_CHECKING:
     from slosh_cli.study.plan import Study
 
-RESULT_VERSION: Final = 3
+RESULT_VERSION: Final = 4
 """Raise it whenever the same scenario would give another answer: journals then compute every stop anew."""
 
 _SAYS_NOTHING: Final = ("name", "description", "output")

@@ -7,6 +7,7 @@ import math
 from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
+from slosh_cli.tank.baffle import CLOSED, baffle_loss
 from slosh_cli.tank.section_table import section_at
 from slosh_cli.vectors import copy
 
@@ -60,8 +61,8 @@ class Cells(Block):
         """
         total = 0.0
         for face in range(liquid.cells + 1):
-            wall = face in (0, liquid.cells) or liquid.loss[face] == math.inf
-            if not wall and liquid.loss[face] == 0.0:
+            wall = face in (0, liquid.cells) or liquid.baffles.at[face] == CLOSED
+            if not wall and liquid.baffles.at[face] == 0:
                 continue
             for cell in range(max(face - 1, 0), min(face + 1, liquid.cells)):
                 area, _, width = section_at(liquid.table, self.depth[cell])
@@ -69,6 +70,7 @@ class Cells(Block):
                     wave = math.sqrt(liquid.gravity * area / width)
                     bars = 1.0
                     if not wall:
-                        bars -= 2.0 / (1.0 + math.sqrt(1.0 + liquid.loss[face] * abs(self.flow[cell]) / (area * wave)))
+                        loss = baffle_loss(liquid.baffles, liquid.baffles.at[face], liquid.table, self.depth[cell])
+                        bars -= 2.0 / (1.0 + math.sqrt(1.0 + loss * abs(self.flow[cell]) / (area * wave)))
                     total += bars * area * (liquid.spacing + step * wave)
         return min(0.5 * liquid.density * total, liquid.mass)

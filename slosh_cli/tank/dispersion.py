@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.baffle import CLOSED
 from slosh_cli.tank.section_table import across_at, section_at
 
 _CALM, _BROKEN = 0.1, 0.2
@@ -78,7 +79,7 @@ def _pressure(gravity, beta, gain, returned, mean_depth, change):
 @kernel
 def _is_wall(liquid, still, face):
     """Whether nothing flows through a face: an end wall, a closed bulkhead or a column at rest."""
-    if face in (0, liquid.cells) or liquid.loss[face] == math.inf:
+    if face in (0, liquid.cells) or liquid.baffles.at[face] == CLOSED:
         return True
     return still[face - 1] + still[face] > 0.0
 
@@ -159,6 +160,19 @@ def _solve(liquid, area, still, dry, rows):
 
 
 @kernel
+def _pull(liquid, area, flow, dry, mass, momentum, source, right):
+    """Shallow water's `A Du` of the cells, into `right`: its change of flow without what the flow carries along."""
+    cells, convected, speed = liquid.cells, 0.0, _speed(area[0], flow[0], dry)
+    for i in range(cells):
+        before, convected = convected, 0.0
+        if i < cells - 1:
+            ahead = _speed(area[i + 1], flow[i + 1], dry)
+            convected = 0.5 * mass[i + 1] * (speed + ahead)
+            speed = ahead
+        right[i] = source[i] - (momentum[i + 1] - convected - momentum[i] + before) / liquid.spacing
+
+
+@kernel
 def disperse(liquid, area, flow, depth, still, dry, rows, mass, momentum, source, push):
     """Add the pressure of the motion across the section to the fluxes of shallow water.
 
@@ -168,14 +182,7 @@ def disperse(liquid, area, flow, depth, still, dry, rows, mass, momentum, source
     cells, spacing = liquid.cells, liquid.spacing
     between, front_beta, rear_beta, front, rear, right = rows[4], rows[5], rows[6], rows[7], rows[8], rows[9]
     _prepare(liquid, area, flow, depth, still, dry, rows)
-    convected, speed = 0.0, _speed(area[0], flow[0], dry)
-    for i in range(cells):
-        before, convected = convected, 0.0
-        if i < cells - 1:
-            ahead = _speed(area[i + 1], flow[i + 1], dry)
-            convected = 0.5 * mass[i + 1] * (speed + ahead)
-            speed = ahead
-        right[i] = source[i] - (momentum[i + 1] - convected - momentum[i] + before) / spacing
+    _pull(liquid, area, flow, dry, mass, momentum, source, right)
     _solve(liquid, area, still, dry, rows)
     behind = 0.0
     for i in range(cells + 1):
@@ -185,7 +192,7 @@ def disperse(liquid, area, flow, depth, still, dry, rows, mass, momentum, source
         else:
             if i < cells and still[i] == 0.0:
                 ahead = rear[i] - 2.0 * rear_beta[i] * right[i] / spacing
-            if 0 < i < cells and liquid.loss[i] < math.inf:  # a column at rest bears it
+            if 0 < i < cells and liquid.baffles.at[i] != CLOSED:  # a column at rest bears it
                 momentum[i] += behind + ahead
             else:
                 momentum[i] += behind if i > 0 else ahead
@@ -208,7 +215,7 @@ def _height(liquid, depth):
 
 
 @kernel
-def across_energy(liquid, area, flow, depth, dry):
+def motion_across(liquid, area, flow, depth, dry):
     """Energy (J) of the motion across the section, and the moment (N m s, nose-down) of its momentum."""
     cells, spacing, table, gravity = liquid.cells, liquid.spacing, liquid.table, liquid.gravity
     energy = moment = 0.0
@@ -218,14 +225,13 @@ def across_energy(liquid, area, flow, depth, dry):
             continue
         speed = _speed(area[i], flow[i], dry)
         _, sinking, _ = section_at(table, depth[i])
-        for side in (-1, 1):
+        for side in (-1, 1):  # half of it at each of the cell's faces
             face = i if side < 0 else i + 1
-            if face in (0, cells) or liquid.loss[face] == math.inf:
-                change, weight = -side * 2.0 * speed / spacing, 0.5
+            if face in (0, cells) or liquid.baffles.at[face] == CLOSED:
+                change = -side * 2.0 * speed / spacing
             else:
                 change = side * (_speed(area[i + side], flow[i + side], dry) - speed) / spacing
-                weight = 0.5
             left, stored = _unbroken(gravity, mean, change)
-            energy += weight * beta * stored
-            moment -= weight * left * sinking * change * (face - 0.5 * cells) * spacing
+            energy += 0.5 * beta * stored
+            moment -= 0.5 * left * sinking * change * (face - 0.5 * cells) * spacing
     return liquid.density * spacing * energy, liquid.density * spacing * moment

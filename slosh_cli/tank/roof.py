@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.baffle import CLOSED
 from slosh_cli.tank.section_table import depth_of, full_level
 
 NEARLY_FULL = 0.6
@@ -71,7 +72,7 @@ def stand_still(liquid, area, depth, acceleration, still):
     tilt = acceleration * liquid.spacing / liquid.gravity
     first = 0
     for end in range(1, liquid.cells + 1):
-        if end < liquid.cells and liquid.loss[end] < math.inf:
+        if end < liquid.cells and liquid.baffles.at[end] != CLOSED:
             continue
         if tilt > 0.0:
             _stand_from(liquid, area, depth, first, end, tilt, still)
@@ -117,7 +118,7 @@ def column_push(liquid, area, acceleration, momentum, still, push):
             if not 0 <= before < cells or still[before] == 0.0:
                 through = momentum[place if way > 0 else place + 1]
             through -= way * acceleration * area[place] * liquid.spacing
-            if ahead in (0, cells) or liquid.loss[ahead] == math.inf:
+            if ahead in (0, cells) or liquid.baffles.at[ahead] == CLOSED:
                 beyond = (through - liquid.gravity * table.pressure[last]) * table.first[last] / table.area[last]
                 push[0] += way * through
                 push[1] += way * (liquid.gravity * table.pressure_arm[last] + beyond)

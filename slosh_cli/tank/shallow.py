@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-from slosh_cli.arrays import Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
-from slosh_cli.tank.dispersion import DISPERSION_ROWS, across_energy
+from slosh_cli.tank.baffle import Baffles
+from slosh_cli.tank.dispersion import DISPERSION_ROWS, motion_across
 from slosh_cli.tank.roof import stand_still, stop_columns
 from slosh_cli.tank.section_table import SectionTable, depth_of, potential_at, stored_level
 from slosh_cli.tank.shallow_flux import DRY, fluxes
@@ -34,10 +34,9 @@ class ShallowLiquid(Block):
     """Constants of the liquid in a tank cut into `cells` of `spacing` (m).
 
     `density` kg/m^3 times the share of the tank that is modelled, `gravity` m/s^2, `centre_height` m of the still
-    liquid above the bottom, `mass` kg, `still_depth` m; `loss` (cells + 1,) is the loss coefficient of a baffle at a
-    face, zero where there is none and infinite where it is closed. `columns`: whether cells that run full up to a
-    wall stand still (`roof`). `disperses`: whether the motion across the section counts (`dispersion`), and `riding` kg
-    is then what rides along at once with the tank of the still liquid.
+    liquid above the bottom, `mass` kg, `still_depth` m; `baffles` are the walls between cells. `columns`: whether cells
+    that run full up to a wall stand still (`roof`). `disperses`: whether the motion across the section counts
+    (`dispersion`), and `riding` kg is then what rides along at once with the tank of the still liquid.
     """
 
     cells: int
@@ -47,7 +46,7 @@ class ShallowLiquid(Block):
     centre_height: float
     mass: float
     still_depth: float
-    loss: Vector
+    baffles: Baffles
     table: SectionTable
     columns: int
     disperses: int
@@ -139,6 +138,14 @@ def _longest_step(liquid, speed, acceleration, courant):
 
 
 @kernel
+def _lifted(liquid, area, flow, depth):
+    """Moment (N m s, nose-down about the bottom centre) of the momentum across the section."""
+    if not liquid.disperses:
+        return 0.0
+    return motion_across(liquid, area, flow, depth, DRY * liquid.table.full_area)[1]
+
+
+@kernel
 def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums):
     """Carry the liquid through `duration` (s) of constant effective `acceleration` (m/s^2) of the tank.
 
@@ -154,9 +161,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
         if depth[i] >= liquid.table.depth[liquid.table.depth.size - 1]:  # it may be a column's, under another tilt
             depth[i] = depth_of(liquid.table, area[i])
     stand_still(liquid, area, depth, acceleration, still)
-    if liquid.disperses:
-        _, lifted = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
-        sums[1] -= lifted
+    sums[1] -= _lifted(liquid, area, flow, depth)
     remaining = duration
     while remaining > 0.0:
         speed = fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push)
@@ -188,9 +193,7 @@ def liquid_evolve(liquid, area, flow, depth, acceleration, duration, work, sums)
             _stop(liquid, stop_columns(liquid, flow, still, step), sums)
         sums[3] += 1.0
         remaining = remaining - step if remaining - step > 1e-12 * duration else 0.0
-    if liquid.disperses:
-        _, lifted = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
-        sums[1] += lifted
+    sums[1] += _lifted(liquid, area, flow, depth)
     return True
 
 
@@ -204,5 +207,5 @@ def liquid_energy_in_tank(liquid, area, flow, depth):
         potential += liquid.gravity * potential_at(liquid.table, stored_level(liquid.table, area[i], depth[i]))
     across = 0.0
     if liquid.disperses:
-        across, _ = across_energy(liquid, area, flow, depth, DRY * liquid.table.full_area)
+        across, _ = motion_across(liquid, area, flow, depth, DRY * liquid.table.full_area)
     return across + liquid.density * liquid.spacing * kinetic, liquid.density * liquid.spacing * potential

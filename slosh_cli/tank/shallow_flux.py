@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from slosh_cli.compiled import kernel
+from slosh_cli.tank.baffle import CLOSED, passing_part, solid_height
 from slosh_cli.tank.dispersion import disperse
 from slosh_cli.tank.roof import column_push
 from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
@@ -67,7 +68,13 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
 
     Closed bulkheads and columns at rest (`still`) are walls.
     """
-    cells, mild, loss, gravity, table = liquid.cells, _MILD / liquid.cells, liquid.loss, liquid.gravity, liquid.table
+    cells, mild, at, gravity, table = (
+        liquid.cells,
+        _MILD / liquid.cells,
+        liquid.baffles.at,
+        liquid.gravity,
+        liquid.table,
+    )
     tilt = acceleration * liquid.spacing / gravity
     last = table.area.size - 1
     dry, roof = DRY * table.area[last], table.depth[last]
@@ -76,11 +83,11 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
         surface_b = surface_a = 0.0
         speed_b, speed_a = 2.0 * speed, -2.0 * speed
         wet = area[i] > dry
-        if i > 0 and loss[i] < math.inf and still[i - 1] == 0.0:
+        if i > 0 and at[i] != CLOSED and still[i - 1] == 0.0:
             wet = wet and area[i - 1] > dry
             surface_b = depth[i] - depth[i - 1] + tilt
             speed_b = speed - (flow[i - 1] / area[i - 1] if area[i - 1] > dry else 0.0)
-        if i < cells - 1 and loss[i + 1] < math.inf and still[i + 1] == 0.0:
+        if i < cells - 1 and at[i + 1] != CLOSED and still[i + 1] == 0.0:
             wet = wet and area[i + 1] > dry
             surface_a = depth[i + 1] - depth[i] + tilt
             speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
@@ -102,25 +109,43 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
 
 
 @kernel
-def _baffle(gravity, loss, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r):
+def _baffle(liquid, wall, depth_l, area_l, flow_l, pressure_l, width_l, depth_r, area_r, flow_r, pressure_r, width_r):
     """Flow (m^3/s) through a baffle, momentum fluxes (m^4/s^2) on its rear and front side, fastest signal (m/s).
 
-    Between the fluxes of an open face and those on a closed wall, as the flow m lies between the open face's and none:
+    Between the fluxes of an open face and those on a closed wall, as the flow lies between the open face's and none:
     such a mean of two fluxes that feed no energy feeds none. The difference of momentum that is left across the baffle
-    is its loss, `0.5 loss m |m| / A` of the narrower side. An infinite loss is a closed wall.
+    is its loss.
     """
+    gravity = liquid.gravity
     mass, open_, fastest = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r)
     _, wall_l, fast_l = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
     _, wall_r, fast_r = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
     fastest = max(fastest, fast_l, fast_r)
-    narrow = min(area_l, area_r)
-    if narrow <= 0.0 or loss == math.inf:
+    if wall == CLOSED or mass == 0.0:
         return 0.0, wall_l, wall_r, fastest
-    acoustic = (math.sqrt(gravity * area_l / width_l) + math.sqrt(gravity * area_r / width_r)) * abs(mass)
-    drive = max(math.copysign(1.0, mass) * (wall_l - wall_r), acoustic)
-    taken = 0.5 * loss / narrow * mass * mass
-    part = 2.0 / (1.0 + math.sqrt(1.0 + 4.0 * taken / drive)) if drive > 0.0 else 0.0
+    more_l, more_r = wall_l / gravity - pressure_l, wall_r / gravity - pressure_r
+    walls, table = liquid.baffles, liquid.table
+    if mass > 0.0:
+        part = passing_part(
+            walls, wall, table, gravity, mass, depth_l, area_l, width_l, more_l, depth_r, area_r, width_r, more_r
+        )
+    else:
+        part = passing_part(
+            walls, wall, table, gravity, mass, depth_r, area_r, width_r, more_r, depth_l, area_l, width_l, more_l
+        )
     return part * mass, wall_l + part * (open_ - wall_l), wall_r + part * (open_ - wall_r), fastest
+
+
+@kernel
+def _turning(liquid, wall, still, depth, face, depth_l, depth_r, before, after):
+    """Moment (m^5/s^2) on a baffle of the momentum fluxes before and after it, about the bottom.
+
+    Where it is open nothing bears on it. A closed one, or beside a column, bears the pressures of both sides' cells.
+    """
+    table = liquid.table
+    if wall == CLOSED or still[face - 1] + still[face] > 0.0:
+        return before * pressure_height(table, depth[face - 1]) - after * pressure_height(table, depth[face])
+    return (before - after) * solid_height(liquid.baffles, wall, table, depth_l, depth_r)
 
 
 @kernel
@@ -145,12 +170,13 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
     `work` is (2, cells + 1) scratch. Cells run from the rear wall forward; the source balances the pressures of a still
     tilted liquid to rounding.
     """
-    cells, table, gravity, loss, spacing = liquid.cells, liquid.table, liquid.gravity, liquid.loss, liquid.spacing
+    cells, table, gravity, spacing = liquid.cells, liquid.table, liquid.gravity, liquid.spacing
+    at = liquid.baffles.at
     slope_depth, slope_speed = work[0], work[1]
     _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed)
     dry = DRY * table.area[table.area.size - 1]
     tilt = acceleration * spacing / gravity
-    area_b = flow_b = pressure_b = 0.0
+    depth_b = area_b = flow_b = pressure_b = 0.0
     width_b = 1.0
     fastest = 1e-9
     push[0] = push[1] = 0.0
@@ -166,7 +192,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         jump = 0.0
         if i == 0:  # the wall mirrors the state
             area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
-        if i > 0 and still[i - 1] + still[i] > 0.0 and loss[i] < math.inf:
+        if i > 0 and still[i - 1] + still[i] > 0.0 and at[i] != CLOSED:
             mass[i] = 0.0
             momentum[i], signal = _column_face(
                 gravity,
@@ -181,9 +207,20 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
                 pressure_l,
                 width_l,
             )
-        elif loss[i] > 0.0:
+        elif at[i] != 0:
             mass[i], before, after, signal = _baffle(
-                gravity, loss[i], area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+                liquid,
+                at[i],
+                depth_b,
+                area_b,
+                flow_b,
+                pressure_b,
+                width_b,
+                below,
+                area_l,
+                flow_l,
+                pressure_l,
+                width_l,
             )
             if still[i - 1] > 0.0:
                 before = 0.0  # `column_push` adds what a column bears
@@ -192,7 +229,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
             momentum[i] = before
             jump = after - before
             push[0] -= jump
-            push[1] += before * pressure_height(table, depth[i - 1]) - after * pressure_height(table, depth[i])
+            push[1] += _turning(liquid, at[i], still, depth, i, depth_b, below, before, after)
         else:
             mass[i], momentum[i], signal = _hll(
                 gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
@@ -201,7 +238,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
         source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / spacing
-        area_b, flow_b, pressure_b, width_b = area_r, flow_r, pressure_r, width_r
+        depth_b, area_b, flow_b, pressure_b, width_b = above, area_r, flow_r, pressure_r, width_r
     _, momentum[cells], signal = _hll(
         gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b
     )

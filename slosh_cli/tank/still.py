@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from slosh_cli.arrays import Array
-from slosh_cli.section import section_of
+from slosh_cli.scenario.units import STANDARD_GRAVITY
+from slosh_cli.section import Section, section_of
+from slosh_cli.tank.baffle import Openings, baffles_at
 from slosh_cli.tank.errors import TankError
 from slosh_cli.tank.load import LoadedLiquid, LoadedTank, frozen_load
 from slosh_cli.tank.longitudinal import longitudinal_modes
@@ -22,6 +24,8 @@ _GENTLE = 1e-3
 """An acceleration (m/s^2) that moves the surface little."""
 _LONG_WAVES = 1e-3
 """Waves are long where their frequency squared is by less than that part lower than shallow water's."""
+_ROUNDING = 1e-12
+"""A baffle with less than this part of its area closed is none."""
 CellColumns = tuple[Array, Array, Array]
 """Area m^2, flow m^3/s and depth m of every cell."""
 
@@ -50,8 +54,12 @@ class TransverseWall(Protocol):
         """Distance from the rear end wall, m."""
 
     @property
-    def opening(self) -> float:
-        """Open part of its area; 0: a closed bulkhead."""
+    def opening(self) -> float | None:
+        """Open part of its area, evenly perforated; 0: a closed bulkhead. None where it has `bands`."""
+
+    @property
+    def bands(self) -> Sequence[tuple[float, float]]:
+        """From where to where it is open, m above the bottom."""
 
 
 class _FlowingTank(LoadedTank, Protocol):
@@ -85,7 +93,7 @@ def shallow_liquid(
         centre_height=load.centre_height,
         mass=share * load.mass,
         still_depth=depth,
-        loss=_baffle_losses(tank),
+        baffles=baffles_at(cells, _walls(tank)),
         table=section_table(section, gravity, tank.liquid.slot_speed),
         columns=int(columns),
         disperses=int(disperses),
@@ -93,7 +101,7 @@ def shallow_liquid(
     )
     columns_at_rest = np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth)
     if disperses:
-        part = _motion_across(tank, liquid, gravity)
+        part = _motion_across(tank, liquid)
         liquid.table.across[:] *= part
         liquid.table.gain[:] *= part
         liquid.riding = _riding(liquid, columns_at_rest)
@@ -104,11 +112,12 @@ def _riding(liquid: ShallowLiquid, cells: CellColumns) -> float:
     """Mass (kg) by which the still liquid resists a tank that starts to move."""
     work, push = np.zeros((WORK_ROWS, liquid.cells + 1)), np.zeros(2)
     mass, momentum, source, still = np.zeros((4, liquid.cells + 1))
-    fluxes(liquid, *cells, still, -_GENTLE, work, mass, momentum, source, push)
+    kernel: Any = fluxes
+    kernel(liquid, *cells, still, -_GENTLE, work, mass, momentum, source, push)
     return float(push[0]) * liquid.density / _GENTLE
 
 
-def _motion_across(tank: _FlowingTank, liquid: ShallowLiquid, gravity: float) -> float:
+def _motion_across(tank: _FlowingTank, liquid: ShallowLiquid) -> float:
     """The inertia of the motion across the section over the table's, so that the first slosh mode has its frequency.
 
     With `omega^2 (1 + k^2 beta/A) = g k^2 A/B`, for the longest part between closed bulkheads. 1 where the section has
@@ -124,12 +133,12 @@ def _motion_across(tank: _FlowingTank, liquid: ShallowLiquid, gravity: float) ->
         mode = longitudinal_modes(section, liquid.still_depth, longest_section(tank)).modes[0]
     except TankError:
         return 1.0
-    return (gravity * wavenumber**2 * area / width / mode.frequency**2 - 1.0) / inertia
+    return (STANDARD_GRAVITY * wavenumber**2 * area / width / mode.frequency**2 - 1.0) / inertia
 
 
 def longest_section(tank: _FlowingTank) -> float:
     """Length (m) of the longest part of the tank between end walls and closed bulkheads."""
-    faces = [place for place, loss in enumerate(_baffle_losses(tank)) if math.isinf(loss)]
+    faces = sorted(face for face, openings in _walls(tank).items() if not openings)
     cells = tank.liquid.cells
     return max(end - start for start, end in pairwise([0, *faces, cells])) / cells * tank.length
 
@@ -152,20 +161,24 @@ def frequency_excess(tank: _FlowingTank, gravity: float) -> float:
         return math.sqrt(wavenumber * mean_depth / math.tanh(wavenumber * mean_depth)) - 1.0
 
 
-def baffle_loss(opening: float) -> float:
-    """Loss coefficient, on the speed in the tank, of a thin wall with a sharp-edged `opening` (part of the area).
-
-    I. E. Idelchik, Handbook of Hydraulic Resistance, on thin orifices: `(1 + 0.707 sqrt(1 - f) - f)^2 / f^2`; infinite
-    for a closed wall.
-    """
-    if opening**2 == 0.0:
-        return math.inf
-    return float((1 + 0.707 * np.sqrt(1 - opening) - opening) ** 2 / opening**2)
+def open_share(wall: TransverseWall, section: Section) -> float:
+    """Open part of the whole area of a baffle."""
+    open_area = sum(share * (section.area(high) - section.area(low)) for low, high, share in _bands(wall, section))
+    return min(open_area / section.area(section.height), 1.0)
 
 
-def _baffle_losses(tank: _FlowingTank) -> Array:
-    """Loss coefficients at the faces between cells (cells + 1,)."""
-    losses = np.zeros(tank.liquid.cells + 1)
-    for baffle in tank.baffles:
-        losses[round(baffle.position / tank.length * tank.liquid.cells)] = baffle_loss(baffle.opening)
-    return losses
+def _bands(wall: TransverseWall, section: Section) -> Openings:
+    """A baffle's openings from the bottom up: evenly perforated it is one of the whole height."""
+    if wall.opening is None:
+        return tuple((low, min(high, section.height), 1.0) for low, high in sorted(wall.bands))
+    return ((0.0, section.height, wall.opening),) if wall.opening**2 > 0.0 else ()
+
+
+def _walls(tank: _FlowingTank) -> dict[int, Openings]:
+    """The openings of every baffle that bars anything, by the nearest face between cells."""
+    section = section_of(tank)
+    return {
+        round(wall.position / tank.length * tank.liquid.cells): _bands(wall, section)
+        for wall in tank.baffles
+        if open_share(wall, section) < 1.0 - _ROUNDING
+    }

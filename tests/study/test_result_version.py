@@ -50,6 +50,29 @@ ANSWERS: dict[int, list[tuple[dict[str, Any], float]]] = {
             117.8737,
         ),
     ],
+    4: [  # baffles let through what flows under two levels
+        ({"braking.torque": "2.5 kN m"}, 430.0477),
+        ({"tank.coefficients": "computed"}, 218.4000),
+        ({"tank.liquid.model": "rigid"}, 218.5250),
+        ({"tank.liquid.model": "rigid", "braking.torque": "15 kN m", "contact.adhesion": "wet"}, 182.9485),
+        ({"tank.liquid.model": "shallow-water", "braking.torque": "10 kN m"}, 120.8943),
+        (
+            {
+                "tank.liquid.model": "shallow-water",
+                "braking.torque": "10 kN m",
+                "tank.baffles": [{"position": "5 m", "opening": 0.2}],
+            },
+            118.2751,
+        ),
+        (
+            {
+                "tank.liquid.model": "shallow-water",
+                "braking.torque": "10 kN m",
+                "tank.baffles": [{"position": "5 m", "openings": [{"from": "0 m", "to": "0.6 m"}]}],
+            },
+            119.4836,
+        ),
+    ],
 }
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from slosh_cli.section import EllipticalSection, PolygonalSection, RectangularSection, Section
+from slosh_cli.tank.baffle import baffles_at
 from slosh_cli.tank.section_table import depth_of, section_at, section_table
 from slosh_cli.tank.shallow import (
     WORK_ROWS,
@@ -26,12 +27,9 @@ SECTIONS = {"circle": CIRCLE, "box": BOX, "ellipse": ELLIPSE, "hexagon": HEXAGON
 
 
 def liquid_in(
-    section: Section, cells: int, depth: float, *, length=LENGTH, density=830.0, slot_speed=30.0, loss=None
+    section: Section, cells: int, depth: float, *, length=LENGTH, density=830.0, slot_speed=30.0, walls=None
 ) -> ShallowLiquid:
-    """A tank's liquid, `depth` deep where it is still; `loss`: {face: coefficient}."""
-    losses = np.zeros(cells + 1)
-    for face, value in (loss or {}).items():
-        losses[face] = value
+    """A tank's liquid, `depth` deep where it is still; `walls`: openings by face."""
     return ShallowLiquid(
         cells=cells,
         spacing=length / cells,
@@ -40,9 +38,11 @@ def liquid_in(
         centre_height=section.centroid_height(depth),
         mass=density * section.area(depth) * length,
         still_depth=depth,
-        loss=losses,
+        baffles=baffles_at(cells, walls or {}),
         table=section_table(section, G, slot_speed),
         columns=1,
+        disperses=0,
+        riding=0.0,
     )
 
 

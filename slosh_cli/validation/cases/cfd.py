@@ -25,6 +25,7 @@ def compute(data: CaseData) -> Outcome:
         rows = data_rows(f"cfd_{name}.csv")
         time, force, moment = (np.array([float(row[key]) for row in rows]) for key in case["columns"])
         flowing = _braked(data, case, "shallow-water", float(time[-1]))
+        dispersed = _braked(data, case, "shallow-water, dispersion: on", float(time[-1]))
         given = np.interp(flowing.time, time, force)
         unit, title = flowing.mass * flowing.largest_deceleration, case["title"]
         curves = [curve("interFoam", time, force / unit, exact=True)]
@@ -33,6 +34,13 @@ def compute(data: CaseData) -> Outcome:
         found.compare(f"peak moment / N m, {title}", float(flowing.moment.max()), float(moment.max()), f"moment_{name}")
         found.note(f"peak force / N, {title}", float(flowing.force.max()), float(force.max()))
         found.note(f"force over m a at once, {title}", float(flowing.force[1] / unit), float(force[0] / unit))
+        late = f"with dispersion, {title}"
+        found.limit(f"rms of the force over m a {late}", _rms(dispersed.force - given) / unit, f"dispersed_{name}")
+        peak = float(dispersed.moment.max())
+        found.compare(f"peak moment / N m {late}", peak, float(moment.max()), f"moment_{name}")
+        found.note(f"peak force / N {late}", float(dispersed.force.max()), float(force.max()))
+        found.note(f"force over m a at once {late}", float(dispersed.force[1] / unit), float(force[0] / unit))
+        curves.append(curve("with dispersion", dispersed.time, dispersed.force / unit))
         if case["linear"]:
             linear = _braked(data, case, "modal", float(time[-1]))
             found.note(f"rms of the force over m a, linear theory, {title}", _rms(linear.force - given) / unit)

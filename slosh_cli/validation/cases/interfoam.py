@@ -11,6 +11,7 @@ from slosh_cli.arrays import Array
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import RectangularSection
 from slosh_cli.tank import shallow
+from slosh_cli.tank.baffle import baffles_at
 from slosh_cli.tank.coefficients import SloshMode
 from slosh_cli.tank.section_table import section_table
 from slosh_cli.validation.case import Findings, Outcome
@@ -71,9 +72,11 @@ def _shallow(tank: Any, deceleration: float, steps: int) -> tuple[Array, Array, 
         centre_height=section.centroid_height(depth),
         mass=tank["density"] * section.area(depth) * tank["length"],
         still_depth=depth,
-        loss=np.zeros(cells + 1),
+        baffles=baffles_at(cells, {}),
         table=section_table(section, STANDARD_GRAVITY, tank["slot_speed"]),
         columns=1,
+        disperses=0,
+        riding=0.0,
     )
     area, flow, deep = np.full(cells, section.area(depth)), np.zeros(cells), np.full(cells, depth)
     evolve: Any = shallow.liquid_evolve
