@@ -12,7 +12,7 @@ from slosh_cli.scenario import Liquid, Rectangular
 from slosh_cli.scenario.loader import scenario_to_yaml
 from slosh_cli.scenario.schema_tank import Baffle
 from slosh_cli.solver.excite import Deceleration, excite
-from slosh_cli.tank.baffle import baffle_loss, discharge
+from slosh_cli.tank.baffle import baffle_loss, discharge, solid_height
 from slosh_cli.tank.still import frequency_excess, longest_section, shallow_liquid
 
 WAVE = np.sqrt(G * CIRCLE.area(1.5) / 3.0)
@@ -211,10 +211,30 @@ def test_discharge_is_the_quadrature_of_the_jet_in_every_section(name):
     height = section.height
     openings = ((0.1 * height, 0.35 * height, 1.0), (0.5 * height, 0.9 * height, 0.3))
     liquid = liquid_in(section, 40, 0.5 * height, walls={20: openings})
-    for lower, higher in ((0.0, 0.3), (0.05, 0.45), (0.3, 0.7), (0.6, 0.62), (0.2, 0.95)):
+    for lower, higher in ((0.0, 0.3), (0.05, 0.45), (0.3, 0.7), (0.45, 0.95), (0.6, 0.62), (0.2, 0.95)):
         found = discharge(liquid.baffles, 1, liquid.table, G, lower * height, (higher - lower) * height)
         exact = discharged(section, openings, higher * height, max(lower, 1e-9) * height)
         assert found == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_a_wall_is_pushed_where_it_is_solid(name):
+    section = SECTIONS[name]
+    height = section.height
+    openings = ((0.1 * height, 0.35 * height, 1.0), (0.5 * height, 0.9 * height, 0.3))
+    liquid = liquid_in(section, 40, 0.5 * height, walls={20: openings})
+    for lower, higher in ((0.2, 0.45), (0.45, 0.95), (0.6, 0.6)):
+
+        def pushed(z, lower=lower, higher=higher):
+            head = min(higher - lower, higher - z / height) if higher > lower else 1.0
+            return head * section.surface_width(z) * (1 - sum(share for low, high, share in openings if low < z < high))
+
+        edges = [lower * height, *(z for band in openings for z in band[:2] if z < higher * height)]
+        force = quad(pushed, 0.0, higher * height, points=edges, limit=200)[0]
+        moment = quad(lambda z, pushed=pushed: z * pushed(z), 0.0, higher * height, points=edges, limit=200)[0]
+        for depths in ((lower, higher), (higher, lower)):
+            found = solid_height(liquid.baffles, 1, liquid.table, *(height * depth for depth in depths))
+            assert found == pytest.approx(moment / force, rel=5e-3)
 
 
 def test_a_wall_that_the_liquid_does_not_reach_is_none():
