@@ -238,6 +238,31 @@ def test_a_wall_is_pushed_where_it_is_solid(name):
             assert found == pytest.approx(moment / force, rel=5e-3)
 
 
+def test_any_walls_in_any_section_keep_the_mass_and_only_take_energy():
+    """Walls, openings, levels and flows by chance; parts that are dry or run full among them."""
+    chance = np.random.default_rng(5)
+    for _ in range(25):
+        section = SECTIONS[chance.choice(list(SECTIONS))]
+        walls = {}
+        for face in chance.choice(np.arange(1, 40), chance.integers(1, 4), replace=False):
+            edges = np.sort(chance.uniform(0.0, section.height, 2 * chance.integers(0, 4)))
+            walls[int(face)] = tuple(
+                (float(low), float(high), float(chance.choice([1.0, 0.5, 0.05])))
+                for low, high in zip(edges[::2], edges[1::2], strict=True)
+            )
+        liquid = liquid_in(section, 40, chance.uniform(0.05, 0.95) * section.height, walls=walls)
+        levels = liquid.still_depth + chance.normal(0.0, 0.3, 40) * section.height
+        levels[: chance.choice([0, 20])] = 0.0
+        tank = moving(liquid, np.clip(levels, 0.0, 1.1 * section.height))
+        tank.flow[:] = tank.area * chance.normal(0.0, 2.0) * np.cos(np.pi * places(liquid) / LENGTH)
+        mass, energies = tank.area.sum(), [tank.energy]
+        for _ in range(20):
+            tank.advance(0.0, 0.1)
+            energies.append(tank.energy)
+        assert np.all(np.diff(energies) < 0.0), walls
+        assert tank.area.sum() == pytest.approx(mass, rel=1e-13)
+
+
 def test_a_wall_that_the_liquid_does_not_reach_is_none():
     """Of its openings, what is wetted counts: a slot as high as the liquid lets all pass, one above it nothing."""
     open_, closed, none = (
