@@ -76,6 +76,7 @@ studies: $(READY)
 	$(BIN)/python docs/identifiability.py
 	$(BIN)/python docs/real_brakes.py
 	$(BIN)/python docs/train_couplers.py
+	$(BIN)/python docs/baffles.py
 
 clean:
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache

@@ -28,7 +28,8 @@ _ROUNDS, _SETTLED = 6, 1e-10
 """The part that passes is sought by the secant rule in at most so many rounds, until it changes by less."""
 _LEAST = 1e-9
 """Resistances and parts held back are not taken for smaller."""
-_GAUSS = math.sqrt(0.6)
+_GAUSS, _PIECES = math.sqrt(0.6), 2
+"""Gauss's points of three, and the pieces of a jet over which they are taken."""
 
 
 class Baffles(Block):
@@ -99,14 +100,18 @@ def _falling(walls, wall, table, lower, higher):
     for k in range(walls.low.shape[1]):
         low, high = max(walls.low[row, k], lower), min(walls.high[row, k], higher)
         if walls.share[row, k] > 0.0 and high > low:
-            # Gauss's rule of three points in the root of the head, in which the integrand of a box is a parabola
+            # by parts INT A d(root) of the root of the head, smooth at corners of the section, a parabola in a box
             start, end = math.sqrt(higher - high), math.sqrt(higher - low)
-            middle, half = 0.5 * (start + end), 0.5 * (end - start)
-            for point in range(3):
-                root = middle + (point - 1) * _GAUSS * half
-                _, _, width = section_at(table, max(higher - root * root, 1e-12 * table.roof))
-                weight = (8.0 if point == 1 else 5.0) / 9.0 * half
-                total += walls.share[row, k] * weight * width * 2.0 * root * root
+            above, _, _ = section_at(table, high)
+            below, _, _ = section_at(table, low)
+            part = start * above - end * below
+            half = 0.5 * (end - start) / _PIECES
+            for point in range(3 * _PIECES):
+                place = point % 3 - 1
+                root = start + (2 * (point // 3) + 1 + place * _GAUSS) * half
+                area, _, _ = section_at(table, higher - root * root)
+                part += (8.0 if place == 0 else 5.0) / 9.0 * half * area
+            total += walls.share[row, k] * part
     return total
 
 

@@ -163,7 +163,9 @@ def frequency_excess(tank: _FlowingTank, gravity: float) -> float:
 
 def open_share(wall: TransverseWall, section: Section) -> float:
     """Open part of the whole area of a baffle."""
-    open_area = sum(share * (section.area(high) - section.area(low)) for low, high, share in _bands(wall, section))
+    if wall.opening is not None:
+        return wall.opening
+    open_area = sum(section.area(high) - section.area(low) for low, high, _ in _bands(wall, section))
     return min(open_area / section.area(section.height), 1.0)
 
 

@@ -12,7 +12,7 @@ from slosh_cli.scenario import Liquid, Rectangular
 from slosh_cli.scenario.loader import scenario_to_yaml
 from slosh_cli.scenario.schema_tank import Baffle
 from slosh_cli.solver.excite import Deceleration, excite
-from slosh_cli.tank.baffle import baffle_loss, discharge
+from slosh_cli.tank.baffle import baffle_loss, discharge, solid_height
 from slosh_cli.tank.still import frequency_excess, longest_section, shallow_liquid
 
 WAVE = np.sqrt(G * CIRCLE.area(1.5) / 3.0)
@@ -209,12 +209,58 @@ def test_levels_even_out_in_the_time_of_the_discharge_equation(name):
 def test_discharge_is_the_quadrature_of_the_jet_in_every_section(name):
     section = SECTIONS[name]
     height = section.height
+    for bands in (((0.1, 0.35, 1.0), (0.5, 0.9, 0.3)), ((0.4, 0.95, 1.0),)):
+        openings = tuple((low * height, high * height, share) for low, high, share in bands)
+        liquid = liquid_in(section, 40, 0.5 * height, walls={20: openings})
+        for lower, higher in ((0.0, 0.3), (0.05, 0.45), (0.3, 0.7), (0.5, 0.95), (0.6, 0.62), (0.2, 0.95)):
+            found = discharge(liquid.baffles, 1, liquid.table, G, lower * height, (higher - lower) * height)
+            exact = discharged(section, openings, higher * height, max(lower, 1e-9) * height)
+            assert found == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_a_wall_is_pushed_where_it_is_solid(name):
+    section = SECTIONS[name]
+    height = section.height
     openings = ((0.1 * height, 0.35 * height, 1.0), (0.5 * height, 0.9 * height, 0.3))
     liquid = liquid_in(section, 40, 0.5 * height, walls={20: openings})
-    for lower, higher in ((0.0, 0.3), (0.05, 0.45), (0.3, 0.7), (0.6, 0.62), (0.2, 0.95)):
-        found = discharge(liquid.baffles, 1, liquid.table, G, lower * height, (higher - lower) * height)
-        exact = discharged(section, openings, higher * height, max(lower, 1e-9) * height)
-        assert found == pytest.approx(exact, rel=5e-3)
+    for lower, higher in ((0.2, 0.45), (0.45, 0.95), (0.6, 0.6)):
+
+        def pushed(z, lower=lower, higher=higher):
+            head = min(higher - lower, higher - z / height) if higher > lower else 1.0
+            return head * section.surface_width(z) * (1 - sum(share for low, high, share in openings if low < z < high))
+
+        edges = [lower * height, *(z for band in openings for z in band[:2] if z < higher * height)]
+        force = quad(pushed, 0.0, higher * height, points=edges, limit=200)[0]
+        moment = quad(lambda z, pushed=pushed: z * pushed(z), 0.0, higher * height, points=edges, limit=200)[0]
+        for depths in ((lower, higher), (higher, lower)):
+            found = solid_height(liquid.baffles, 1, liquid.table, *(height * depth for depth in depths))
+            assert found == pytest.approx(moment / force, rel=5e-3)
+
+
+def test_any_walls_in_any_section_keep_the_mass_and_only_take_energy():
+    """Walls, openings, levels and flows by chance; parts that are dry or run full among them."""
+    chance = np.random.default_rng(5)
+    for _ in range(25):
+        section = SECTIONS[chance.choice(list(SECTIONS))]
+        walls = {}
+        for face in chance.choice(np.arange(1, 40), chance.integers(1, 4), replace=False):
+            edges = np.sort(chance.uniform(0.0, section.height, 2 * chance.integers(0, 4)))
+            walls[int(face)] = tuple(
+                (float(low), float(high), float(chance.choice([1.0, 0.5, 0.05])))
+                for low, high in zip(edges[::2], edges[1::2], strict=True)
+            )
+        liquid = liquid_in(section, 40, chance.uniform(0.05, 0.95) * section.height, walls=walls)
+        levels = liquid.still_depth + chance.normal(0.0, 0.3, 40) * section.height
+        levels[: chance.choice([0, 20])] = 0.0
+        tank = moving(liquid, np.clip(levels, 0.0, 1.1 * section.height))
+        tank.flow[:] = tank.area * chance.normal(0.0, 2.0) * np.cos(np.pi * places(liquid) / LENGTH)
+        mass, energies = tank.area.sum(), [tank.energy]
+        for _ in range(20):
+            tank.advance(0.0, 0.1)
+            energies.append(tank.energy)
+        assert np.all(np.diff(energies) < 0.0), walls
+        assert tank.area.sum() == pytest.approx(mass, rel=1e-13)
 
 
 def test_a_wall_that_the_liquid_does_not_reach_is_none():

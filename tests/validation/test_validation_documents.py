@@ -45,6 +45,11 @@ def train_couplers():
     return script("train_couplers")
 
 
+@pytest.fixture(scope="module")
+def baffles():
+    return script("baffles")
+
+
 def stored_rows():
     with (DOCS / "identifiability.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
@@ -203,6 +208,21 @@ def test_rows_of_the_table_of_train_couplers_are_what_a_run_gives_today(train_co
     found = train_couplers.examined(asked, train_couplers.train_of(asked, tmp_path))
     for name, text in found.items():
         assert text == stored[name] or float(text) == pytest.approx(float(stored[name]), rel=1e-4), name
+
+
+def test_the_page_of_baffles_is_that_of_its_table(baffles):
+    rows = baffles.read()
+    asked = [tuple(str(value) for value in stop.values()) for stop in baffles.settings()]
+    assert [tuple(row[name] for name in baffles.CONDITIONS) for row in rows] == asked
+    assert (DOCS / "baffles.md").read_text(encoding="utf-8") == baffles.page(rows)
+
+
+def test_a_row_of_the_table_of_baffles_is_what_a_run_gives_today(baffles):
+    asked = dict(zip(baffles.CONDITIONS, (0.6, "P", "slot", 2), strict=True))
+    (stored,) = baffles.only(baffles.read(), **asked)
+    for name, text in baffles.examined(asked).items():
+        told = stored[name]
+        assert text == told or float(text) == pytest.approx(float(told), rel=1e-3, abs=1e-5), name
 
 
 def test_what_the_findings_say_in_prose(stop):
