@@ -10,10 +10,11 @@ what `A Du + P_x` is: a tridiagonal system for Du. In a rectangular section `bet
 equations of A. E. Green and P. M. Naghdi, J. Fluid Mech. 78 (1976) 237-246; `section_table` has beta of all sections
 (theory section 10).
 
-A surface that rises or sinks at more than 0.15 of its waves' speed breaks (A. B. Kennedy et al., J. Waterway, Port,
-Coastal, Ocean Eng. 126 (2000) 39-47: there a breaker comes to rest). There beta fades to nothing. So that no energy
-comes of that, what is stored is then `beta` times the integral of the part left over s, `0.5 s^2` being that of the
-whole. Rising fronts are mixed with the eddy viscosity of the same publication.
+Where the surface rises or sinks faster than a third of its waves' speed, waves break (M. Kazolea, A. I. Delis and C. E.
+Synolakis, J. Comput. Phys. 271 (2014) 281-305, on such criteria: 0.3 to 0.65), and beta fades to nothing. So that no
+energy comes of that, what is stored is then `beta` times the integral of the part left over s, `0.5 s^2` being that
+of the whole. Fronts that rise, are steep and carry liquid along are mixed by an eddy viscosity (A. B. Kennedy et al.,
+J. Waterway, Port, Coastal, Ocean Eng. 126 (2000) 39-47).
 """
 
 from __future__ import annotations
@@ -24,13 +25,15 @@ from slosh_cli.compiled import kernel
 from slosh_cli.tank.baffle import CLOSED
 from slosh_cli.tank.section_table import across_at, section_at
 
-_CALM, _BROKEN = 0.1, 0.2
+_CALM, _BROKEN = 0.25, 0.35
 """The term fades from where the surface moves at the first part of the waves' speed to where it does at the second."""
-_MIXING = 1.2 * 1.2
-"""Eddy viscosity of a front over depth and rate of rise: the square of Kennedy's mixing length."""
-_UNDER_THE_ROOF = 0.05
+_LEAST_FRONT, _FRONT = 0.05, 0.15
+"""A front is mixed from the first part on of slope and of the waves' speed in rise and flow, wholly from the second."""
+_MIXING = 1.5 * 1.5
+"""Eddy viscosity of a front over depth and rate of rise: the square of the mixing length, 0.9 to 1.5 depths."""
+_UNDER_THE_ROOF = 0.15
 """The term fades in this part of the section's height below the roof, which lets nothing rise."""
-DISPERSION_ROWS = 12
+DISPERSION_ROWS = 10
 """Rows of scratch that `disperse` needs."""
 
 
@@ -41,16 +44,17 @@ def _speed(area, flow, dry):
 
 @kernel
 def _across(table, area, depth, dry):
-    """Of one cell: beta and `A beta' - beta` (m^4), what beta's return below the roof costs (m^4), and A/B (m)."""
+    """Of one cell: beta and `A beta' - beta` (m^4), and A/B (m)."""
     last = table.depth.size - 1
     room = (1.0 - depth / table.depth[last]) / _UNDER_THE_ROOF
     if area <= dry or room <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0
     beta, gain = across_at(table, depth)
     _, _, width = section_at(table, depth)
     if room >= 1.0:
-        return beta, gain, 0.0, area / width
-    return room * beta, room * gain, area * beta / (_UNDER_THE_ROOF * table.depth[last] * width), area / width
+        return beta, gain, area / width
+    lost = beta * area / (_UNDER_THE_ROOF * table.depth[last] * width)
+    return room * beta, room * gain - lost, area / width
 
 
 @kernel
@@ -66,13 +70,11 @@ def _unbroken(gravity, mean_depth, change):
 
 
 @kernel
-def _pressure(gravity, beta, gain, returned, mean_depth, change):
+def _pressure(gravity, beta, gain, mean_depth, change):
     """Of one cell's side of a face: the beta left (m^4) and the pressure without Du (m^4/s^2)."""
     if beta <= 0.0:
         return 0.0, 0.0
     left, stored = _unbroken(gravity, mean_depth, change)
-    if change > 0.0:  # the surface sinks
-        gain -= returned
     return left * beta, left * beta * change * change + gain * stored
 
 
@@ -85,55 +87,57 @@ def _is_wall(liquid, still, face):
 
 
 @kernel
-def _mixed(liquid, area, flow, mean_depth, face):
+def _mixed(liquid, area, flow, depth, mean_depth, face):
     """Eddy viscosity times area (m^4/s) at a face, and how fast waves are there (m/s)."""
     deep, wetted = 0.5 * (mean_depth[face - 1] + mean_depth[face]), 0.5 * (area[face - 1] + area[face])
     wave = math.sqrt(liquid.gravity * deep)
     rise = (flow[face - 1] - flow[face]) / liquid.spacing * deep / wetted
-    part = min((rise / wave - _CALM) / (_BROKEN - _CALM), 1.0)
-    return (_MIXING * part * rise * deep * wetted if part > 0.0 else 0.0), wave
+    slope = abs(depth[face] - depth[face - 1]) / liquid.spacing
+    carried = 0.5 * abs(flow[face] + flow[face - 1]) / wetted
+    part = (min(rise / wave, slope, carried / wave) - _LEAST_FRONT) / (_FRONT - _LEAST_FRONT)
+    return (_MIXING * min(part, 1.0) * rise * deep * wetted if part > 0.0 else 0.0), wave
 
 
 @kernel
 def _prepare(liquid, area, flow, depth, still, dry, rows):
     """Fill `rows` with the betas at the faces and the pressures there without Du."""
     cells, spacing, gravity = liquid.cells, liquid.spacing, liquid.gravity
-    beta, gain, returned, mean = rows[0], rows[1], rows[2], rows[3]
-    between, front_beta, rear_beta, front, rear = rows[4], rows[5], rows[6], rows[7], rows[8]
+    beta, gain, mean = rows[0], rows[1], rows[2]
+    between, front_beta, rear_beta, front, rear = rows[3], rows[4], rows[5], rows[6], rows[7]
     for i in range(cells):
-        beta[i], gain[i], returned[i], mean[i] = _across(liquid.table, area[i], depth[i], dry)
+        beta[i], gain[i], mean[i] = _across(liquid.table, area[i], depth[i], dry)
     before = 0.0
     for i in range(cells):
         speed = _speed(area[i], flow[i], dry)
         if _is_wall(liquid, still, i):
             change = 2.0 * speed / spacing
-            rear_beta[i], rear[i] = _pressure(gravity, beta[i], gain[i], returned[i], mean[i], change)
+            rear_beta[i], rear[i] = _pressure(gravity, beta[i], gain[i], mean[i], change)
         else:
             change, k = (speed - before) / spacing, i - 1
-            one, push_one = _pressure(gravity, beta[i], gain[i], returned[i], mean[i], change)
-            other, push_other = _pressure(gravity, beta[k], gain[k], returned[k], mean[k], change)
+            one, push_one = _pressure(gravity, beta[i], gain[i], mean[i], change)
+            other, push_other = _pressure(gravity, beta[k], gain[k], mean[k], change)
             between[i] = rear[i] = 0.0
             if mean[i] > 0.0 and mean[k] > 0.0:
-                mixing, wave = _mixed(liquid, area, flow, mean, i)
+                mixing, wave = _mixed(liquid, area, flow, depth, mean, i)
                 # the stress follows Du within a step, as long as waves take for half a cell
                 between[i] = 0.5 * (one + other + mixing * spacing / wave)
                 rear[i] = 0.5 * (push_one + push_other) - mixing * change
             front[k] = rear[i]
         if _is_wall(liquid, still, i + 1):
             change = -2.0 * speed / spacing
-            front_beta[i], front[i] = _pressure(gravity, beta[i], gain[i], returned[i], mean[i], change)
+            front_beta[i], front[i] = _pressure(gravity, beta[i], gain[i], mean[i], change)
         before = speed
 
 
 @kernel
 def _solve(liquid, area, still, dry, rows):
-    """Du (m/s^2) of the cells from shallow water's `A Du`, both `rows[9]`, by Thomas' algorithm; `rows[10]` is scratch.
+    """Du (m/s^2) of the cells from shallow water's `A Du`, both `rows[8]`, by Thomas' algorithm; `rows[9]` is scratch.
 
     The matrix is symmetric, and its diagonal rules. Columns at rest and dry cells have none.
     """
     cells, spacing = liquid.cells, liquid.spacing
     between, front_beta, rear_beta, front, rear, right, upper = (
-        rows[4], rows[5], rows[6], rows[7], rows[8], rows[9], rows[10],
+        rows[3], rows[4], rows[5], rows[6], rows[7], rows[8], rows[9],
     )  # fmt: skip
     squared, lower, above = spacing * spacing, 0.0, 0.0
     for i in range(cells):
@@ -180,7 +184,7 @@ def disperse(liquid, area, flow, depth, still, dry, rows, mass, momentum, source
     (DISPERSION_ROWS, cells + 1) is scratch. Du is nothing at walls, closed bulkheads and columns at rest.
     """
     cells, spacing = liquid.cells, liquid.spacing
-    between, front_beta, rear_beta, front, rear, right = rows[4], rows[5], rows[6], rows[7], rows[8], rows[9]
+    between, front_beta, rear_beta, front, rear, right = rows[3], rows[4], rows[5], rows[6], rows[7], rows[8]
     _prepare(liquid, area, flow, depth, still, dry, rows)
     _pull(liquid, area, flow, dry, mass, momentum, source, right)
     _solve(liquid, area, still, dry, rows)
@@ -220,7 +224,7 @@ def motion_across(liquid, area, flow, depth, dry):
     cells, spacing, table, gravity = liquid.cells, liquid.spacing, liquid.table, liquid.gravity
     energy = moment = 0.0
     for i in range(cells):
-        beta, _, _, mean = _across(table, area[i], depth[i], dry)
+        beta, _, mean = _across(table, area[i], depth[i], dry)
         if beta <= 0.0:
             continue
         speed = _speed(area[i], flow[i], dry)

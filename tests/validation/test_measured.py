@@ -84,3 +84,11 @@ def test_the_bore_at_the_probe():
 def test_the_wave_height_of_the_deep_tank_is_beyond_linear_theory():
     times, heights = columns("sway_wave_height_1.73")
     assert rms(wave_height(DATA, "modal", times) - heights) == pytest.approx(0.0243, abs=0.0005)
+
+
+@needs_the_files
+def test_with_dispersion_wave_height_and_bore_are_nearer_to_the_measured_ones():
+    times, heights = columns("sway_wave_height_1.73")
+    assert rms(wave_height(DATA, "dispersion", times) - heights) < 0.0195
+    periods, heights = columns("sway_bore_0.03")
+    assert best_phase(bore_height(DATA, periods, "dispersion"), heights)[0] < 0.0065

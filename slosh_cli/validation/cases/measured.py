@@ -69,10 +69,10 @@ def wave_height(reference: Any, model: str, times: Vector) -> Vector:
     return np.interp(times, run.time, run.watched.probes[:, 0])
 
 
-def bore_height(reference: Any, periods: Vector) -> Callable[[float], Vector]:
+def bore_height(reference: Any, periods: Vector, model: str = "shallow-water") -> Callable[[float], Vector]:
     """Wave heights (m) at the probe of the shallow tank at `periods`, read later by a part of a period."""
     given = reference["bore"]
-    tank = _tank(given, "shallow-water")
+    tank = _tank(given, model)
     period = 2 * pi / (given["ratio"] * tank_modes(tank, 1).modes[0].frequency)
     run = _moved(
         tank,
@@ -121,11 +121,14 @@ def _waves(found: Findings, reference: Any) -> Panel:
     linear = wave_height(reference, "modal", times)
     found.limit("rms at 1.73 m, linear theory / m", rms(linear - heights), "waves", _FALTINSEN)
     found.note("rms at 1.73 m, shallow water / m", rms(wave_height(reference, "shallow-water", times) - heights))
+    dispersed = wave_height(reference, "dispersion", times)
+    found.limit("rms at 1.73 m, with dispersion / m", rms(dispersed - heights), "waves_dispersed", _FALTINSEN)
     found.note("trough at 1.73 m, linear theory / m", float(linear.min()), float(heights.min()), _FALTINSEN)
     every = np.linspace(0.0, float(times.max()), 400)
     curves = (
         curve("measured", times, heights, exact=True, marks=True),
         curve("modal", every, wave_height(reference, "modal", every)),
+        curve("with dispersion", every, wave_height(reference, "dispersion", every)),
     )
     return Panel("time / s", "wave height / m", curves, title="1.73 m long, 0.6 m deep")
 
@@ -134,6 +137,8 @@ def _bore(found: Findings, reference: Any) -> Panel:
     periods, heights = np.array(reference["bore"]["heights"]).T
     miss, later = best_phase(bore_height(reference, periods), heights)
     found.limit("rms of the bore / m", miss, "bore", _BOUSCASSE)
+    dispersed, _ = best_phase(bore_height(reference, periods, "dispersion"), heights)
+    found.limit("rms of the bore with dispersion / m", dispersed, "bore_dispersed", _BOUSCASSE)
     found.limit("part of a period by which the bore is early", later, "bore_phase", _BOUSCASSE)
     every = np.linspace(float(periods.min()), float(periods.max()), 600)
     shown = bore_height(reference, every)(later)
@@ -149,8 +154,9 @@ _BOUSCASSE = "B. Bouscasse et al., Int. J. Nonlin. Sci. Num. Sim. 14 (2013) 123"
 
 
 def _tank(given: Any, model: str) -> Tank:
-    """A box from its description in the data file, with the liquid's `model`."""
-    liquid = f"{{model: {model}, {given[model]}}}"
+    """A box from its description in the data file, with the liquid's `model`, which may be shallow water's `dispersion`."""
+    kind = "shallow-water" if model == "dispersion" else model
+    liquid = f"{{model: {kind}, {given[kind]}, dispersion: {'on' if kind != model else 'off'}}}"
     modes = ", modes: 5" if model == "modal" else ""
     words = f"tank={{shape: rectangular, {given['box']}, liquid: {liquid}{modes}}}"
     return load_any_scenario(find_packaged("kolaei-half"), [words]).tank
