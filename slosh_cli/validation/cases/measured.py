@@ -154,7 +154,7 @@ _BOUSCASSE = "B. Bouscasse et al., Int. J. Nonlin. Sci. Num. Sim. 14 (2013) 123"
 
 
 def _tank(given: Any, model: str) -> Tank:
-    """A box from its description in the data file, with the liquid's `model`, which may be shallow water's `dispersion`."""
+    """A box from its description in the data file, with the liquid's `model`; `dispersion` is shallow water's."""
     kind = "shallow-water" if model == "dispersion" else model
     liquid = f"{{model: {kind}, {given[kind]}, dispersion: {'on' if kind != model else 'off'}}}"
     modes = ", modes: 5" if model == "modal" else ""
