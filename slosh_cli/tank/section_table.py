@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from slosh_cli.arrays import Integers, Vector
+from slosh_cli.arrays import Integers, Matrix, Vector
 from slosh_cli.blocks import Block
 from slosh_cli.compiled import kernel
 from slosh_cli.section import PolygonalSection, Section
 
 _NODES = 400
 """Depths of the table, crowded towards bottom and roof where the width varies fastest."""
-_BINS = 1024
+_BINS = 2048
 """Equal parts of depth and area that tell where the search for a node starts."""
 LEDGE = 1e-9
 """Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
@@ -28,7 +28,8 @@ class SectionTable(Block):
     The roof is at `roof` (m); up to there the section holds `full_area` (m^2).
 
     `area` m^2, `width` m, `first` = INT z b dz m^3, `pressure` = INT (h - z) b dz m^3 (the moment I1 of the
-    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `depth_start`, `area_start` (_BINS + 1,): the
+    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `curves` (K - 1, 10): of each interval the depth at
+    its start, one over its length, and the coefficients of the cubics of area and pressure in the part passed. `depth_start`, `area_start` (_BINS + 1,): the
     last node not beyond the start of each of as many equal parts of depth and area.
     """
 
@@ -38,6 +39,7 @@ class SectionTable(Block):
     first: Vector
     pressure: Vector
     pressure_arm: Vector
+    curves: Matrix
     across: Vector
     gain: Vector
     depth_start: Integers
@@ -90,6 +92,15 @@ def _across(depth: Vector, area: Vector, width: Vector) -> tuple[Vector, Vector]
     return across, area / np.maximum(width, mean[-1]) * rate - across
 
 
+def _curves(depth: Vector, area: Vector, width: Vector, pressure: Vector) -> Matrix:
+    """`SectionTable.curves`: cubics through the nodes with the slopes that area and pressure have there."""
+    span, columns = np.diff(depth), [depth[:-1], 1.0 / np.diff(depth)]
+    for value, slope in ((area, width), (pressure, area)):
+        rise, start, end = np.diff(value), span * slope[:-1], span * slope[1:]
+        columns += [value[:-1], start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise]
+    return np.ascontiguousarray(np.column_stack(columns))
+
+
 def section_table(section: Section, gravity: float, slot_speed: float) -> SectionTable:
     """Tabulate `section`; pressure waves in the full section run at `slot_speed` (m/s). Gravity in m/s^2."""
     slot_width = gravity * section.area(section.height) / slot_speed**2
@@ -110,6 +121,7 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         first=first,
         pressure=depth * area - first,
         pressure_arm=depth * first - second,
+        curves=_curves(depth, area, width, depth * area - first),
         across=across,
         gain=gain,
         depth_start=_starts(depth),
@@ -133,59 +145,44 @@ def _node(places, start, place):
 @kernel
 def depth_of(table, area):
     """Depth (m) of a wetted area (m^2): the table's cubic, inverted by Newton's method; above it the slot."""
-    depths, areas, widths = table.depth, table.area, table.width
+    depths, areas = table.depth, table.area
     last = depths.size - 1
     if area >= areas[last]:
         return depths[last] + (area - areas[last]) / table.slot_width
     if area <= 0.0:
         return 0.0
-    low = _node(areas, table.area_start, area)
-    high = low + 1
-    left, right = depths[low], depths[high]
-    depth = left + (right - left) * (area - areas[low]) / (areas[high] - areas[low])
+    k = _node(areas, table.area_start, area)
+    curve = table.curves[k]
+    first, second, third = curve[3], curve[4], curve[5]
+    wanted, whole = area - curve[2], first + second + third
+    part = wanted / whole
+    part += (second + third) / whole * part * (1.0 - part)
     for _ in range(20):
-        value, slope = _cubic(depths, areas, widths, low, depth)
-        change = (area - value) / slope if slope > 0.0 else 0.0
-        following = min(max(depth + change, left), right)
-        change = following - depth
-        depth = following
-        if abs(change) <= 1e-9 * depth:  # the next change would be about the square of this one
+        value = part * (first + part * (second + part * third))
+        slope = first + part * (2.0 * second + 3.0 * part * third)
+        following = min(max(part + (wanted - value) / slope if slope > 0.0 else part, 0.0), 1.0)
+        change = following - part
+        part = following
+        if abs(change) <= 1e-8:  # the next change would be about the square of this one
             break
-    return depth
-
-
-@kernel
-def _cubic(places, values, slopes, k, place):
-    """Cubic through two neighbouring nodes with given slopes; its value and slope."""
-    span = places[k + 1] - places[k]
-    part = (place - places[k]) / span
-    rest = 1.0 - part
-    value = (
-        rest * rest * (1.0 + 2.0 * part) * values[k]
-        + part * part * (3.0 - 2.0 * part) * values[k + 1]
-        + span * part * rest * (rest * slopes[k] - part * slopes[k + 1])
-    )
-    slope = (
-        6.0 * part * rest * (values[k + 1] - values[k]) / span
-        + rest * (1.0 - 3.0 * part) * slopes[k]
-        + part * (3.0 * part - 2.0) * slopes[k + 1]
-    )
-    return value, slope
+    return curve[0] + part / curve[1]
 
 
 @kernel
 def section_at(table, depth):
     """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
-    depths, areas, pressures = table.depth, table.area, table.pressure
+    depths = table.depth
     last = depths.size - 1
     if depth >= depths[last]:
-        head, slot = depth - depths[last], table.slot_width
-        return areas[last] + slot * head, pressures[last] + head * (areas[last] + 0.5 * slot * head), slot
+        head, slot, area = depth - depths[last], table.slot_width, table.area[last]
+        return area + slot * head, table.pressure[last] + head * (area + 0.5 * slot * head), slot
     if depth <= 0.0:
         return 0.0, 0.0, 1.0
-    k = _node(depths, table.depth_start, depth)
-    area, width = _cubic(depths, areas, table.width, k, depth)
-    pressure, _ = _cubic(depths, pressures, areas, k, depth)
+    curve = table.curves[_node(depths, table.depth_start, depth)]
+    part = (depth - curve[0]) * curve[1]
+    area = curve[2] + part * (curve[3] + part * (curve[4] + part * curve[5]))
+    width = (curve[3] + part * (2.0 * curve[4] + 3.0 * part * curve[5])) * curve[1]
+    pressure = curve[6] + part * (curve[7] + part * (curve[8] + part * curve[9]))
     return area, pressure, max(width, 1e-12)
 
 
@@ -238,9 +235,7 @@ def pressure_height(table, depth):
         arm = table.pressure_arm[last] + head * table.first[last]
         return arm / (table.pressure[last] + head * table.area[last])
     k = _node(table.depth, table.depth_start, depth)
-    area, _ = _cubic(table.depth, table.area, table.width, k, depth)
-    pressure, _ = _cubic(table.depth, table.pressure, table.area, k, depth)
-    span = table.depth[k + 1] - table.depth[k]
-    part = (depth - table.depth[k]) / span
+    area, pressure, _ = section_at(table, depth)
+    part = (depth - table.depth[k]) * table.curves[k, 1]
     arm = table.pressure_arm[k] + part * (table.pressure_arm[k + 1] - table.pressure_arm[k])
     return min(arm / pressure, depth) if pressure > 0.0 and area > 0.0 else 0.0

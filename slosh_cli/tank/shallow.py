@@ -23,7 +23,7 @@ _MOST_COURANT = 0.5
 """A step during which the waves grow faster than that, as where a cell runs full, is taken again, shorter."""
 _SHORTEST_STEP = 1e-7
 """Steps (s) do not go below this."""
-WORK_ROWS = 18 + DISPERSION_ROWS
+WORK_ROWS = 19 + DISPERSION_ROWS
 """Rows of scratch that `liquid_evolve` needs, each one longer than the cells."""
 _FILM = 1e-4
 """In a film of less than this part of the full section's area the speed fades with the area, so that flow over area

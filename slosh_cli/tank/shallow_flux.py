@@ -37,10 +37,8 @@ def _limited(before, after, mild):
 
 
 @kernel
-def _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r):
+def _hll(gravity, area_l, speed_l, pressure_l, width_l, area_r, speed_r, pressure_r, width_r):
     """HLL flux of mass (m^3/s) and momentum (m^4/s^2) between two states, and its fastest signal (m/s)."""
-    speed_l = flow_l / area_l if area_l > 0.0 else 0.0
-    speed_r = flow_r / area_r if area_r > 0.0 else 0.0
     wave_l = math.sqrt(gravity * area_l / width_l)
     wave_r = math.sqrt(gravity * area_r / width_r)
     if area_l <= 0.0:
@@ -50,20 +48,21 @@ def _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_
     left = min(speed_l - wave_l, speed_r - wave_r)
     right = max(speed_l + wave_l, speed_r + wave_r)
     fastest = max(-left, right)
-    momentum_l = flow_l * (flow_l / area_l if area_l > 0.0 else 0.0) + gravity * pressure_l
-    momentum_r = flow_r * (flow_r / area_r if area_r > 0.0 else 0.0) + gravity * pressure_r
+    flow_l, flow_r = area_l * speed_l, area_r * speed_r
+    momentum_l = flow_l * speed_l + gravity * pressure_l
+    momentum_r = flow_r * speed_r + gravity * pressure_r
     if left >= 0.0:
         return flow_l, momentum_l, fastest
     if right <= 0.0:
         return flow_r, momentum_r, fastest
-    span = right - left
-    mass = (right * flow_l - left * flow_r + left * right * (area_r - area_l)) / span
-    momentum = (right * momentum_l - left * momentum_r + left * right * (flow_r - flow_l)) / span
+    part, both = 1.0 / (right - left), left * right
+    mass = (right * flow_l - left * flow_r + both * (area_r - area_l)) * part
+    momentum = (right * momentum_l - left * momentum_r + both * (flow_r - flow_l)) * part
     return mass, momentum, fastest
 
 
 @kernel
-def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed):
+def _slopes(liquid, area, depth, speeds, still, acceleration, slope_depth, slope_speed):
     """Limited changes over a cell of depth (m, the still tilt included) and speed (m/s).
 
     Closed bulkheads and columns at rest (`still`) are walls.
@@ -79,18 +78,18 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
     last = table.area.size - 1
     dry, roof = DRY * table.area[last], table.depth[last]
     for i in range(cells):
-        speed = flow[i] / area[i] if area[i] > dry else 0.0
+        speed = speeds[i]
         surface_b = surface_a = 0.0
         speed_b, speed_a = 2.0 * speed, -2.0 * speed
         wet = area[i] > dry
         if i > 0 and at[i] != CLOSED and still[i - 1] == 0.0:
             wet = wet and area[i - 1] > dry
             surface_b = depth[i] - depth[i - 1] + tilt
-            speed_b = speed - (flow[i - 1] / area[i - 1] if area[i - 1] > dry else 0.0)
+            speed_b = speed - speeds[i - 1]
         if i < cells - 1 and at[i + 1] != CLOSED and still[i + 1] == 0.0:
             wet = wet and area[i + 1] > dry
             surface_a = depth[i + 1] - depth[i] + tilt
-            speed_a = (flow[i + 1] / area[i + 1] if area[i + 1] > dry else 0.0) - speed
+            speed_a = speeds[i + 1] - speed
         slope_depth[i] = slope_speed[i] = 0.0
         if wet:
             slope_depth[i] = _limited(surface_b, surface_a, mild * depth[i])
@@ -102,14 +101,14 @@ def _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_s
         # force jumps at no acceleration. A still liquid's surface may
         room = 2.0 * max(abs(depth[i] - roof) - LEDGE * roof, 0.0)
         if abs(slope_depth[i]) > room and area[i] > dry:
-            flowing = min((flow[i] / area[i]) ** 2 / (_STILL * _STILL * gravity * depth[i]), 1.0)
+            flowing = min(speed * speed / (_STILL * _STILL * gravity * depth[i]), 1.0)
             slope_depth[i] += flowing * (math.copysign(room, slope_depth[i]) - slope_depth[i])
         # neither end of a cell lies below the bed
         slope_depth[i] = min(max(slope_depth[i], -2.0 * depth[i]), 2.0 * depth[i])
 
 
 @kernel
-def _baffle(liquid, wall, depth_l, area_l, flow_l, pressure_l, width_l, depth_r, area_r, flow_r, pressure_r, width_r):
+def _baffle(liquid, wall, depth_l, area_l, speed_l, pressure_l, width_l, depth_r, area_r, speed_r, pressure_r, width_r):
     """Flow (m^3/s) through a baffle, momentum fluxes (m^4/s^2) on its rear and front side, fastest signal (m/s).
 
     Between the fluxes of an open face and those on a closed wall, as the flow lies between the open face's and none:
@@ -117,9 +116,9 @@ def _baffle(liquid, wall, depth_l, area_l, flow_l, pressure_l, width_l, depth_r,
     is its loss.
     """
     gravity = liquid.gravity
-    mass, open_, fastest = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_r, flow_r, pressure_r, width_r)
-    _, wall_l, fast_l = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
-    _, wall_r, fast_r = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
+    mass, open_, fastest = _hll(gravity, area_l, speed_l, pressure_l, width_l, area_r, speed_r, pressure_r, width_r)
+    _, wall_l, fast_l = _hll(gravity, area_l, speed_l, pressure_l, width_l, area_l, -speed_l, pressure_l, width_l)
+    _, wall_r, fast_r = _hll(gravity, area_r, -speed_r, pressure_r, width_r, area_r, speed_r, pressure_r, width_r)
     fastest = max(fastest, fast_l, fast_r)
     if wall == CLOSED or mass == 0.0:
         return 0.0, wall_l, wall_r, fastest
@@ -149,13 +148,13 @@ def _turning(liquid, wall, still, depth, face, depth_l, depth_r, before, after):
 
 
 @kernel
-def _column_face(gravity, still_l, area_l, flow_l, pressure_l, width_l, still_r, area_r, flow_r, pressure_r, width_r):
+def _column_face(gravity, still_l, area_l, speed_l, pressure_l, width_l, still_r, area_r, speed_r, pressure_r, width_r):
     """Momentum flux (m^4/s^2) and fastest signal (m/s) where a column at rest reflects an open surface; 0 inside it."""
     momentum = signal = 0.0
     if still_l == 0.0:
-        _, momentum, signal = _hll(gravity, area_l, flow_l, pressure_l, width_l, area_l, -flow_l, pressure_l, width_l)
+        _, momentum, signal = _hll(gravity, area_l, speed_l, pressure_l, width_l, area_l, -speed_l, pressure_l, width_l)
     elif still_r == 0.0:
-        _, momentum, signal = _hll(gravity, area_r, -flow_r, pressure_r, width_r, area_r, flow_r, pressure_r, width_r)
+        _, momentum, signal = _hll(gravity, area_r, -speed_r, pressure_r, width_r, area_r, speed_r, pressure_r, width_r)
     return momentum, signal
 
 
@@ -172,38 +171,39 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
     """
     cells, table, gravity, spacing = liquid.cells, liquid.table, liquid.gravity, liquid.spacing
     at = liquid.baffles.at
-    slope_depth, slope_speed = work[0], work[1]
-    _slopes(liquid, area, flow, depth, still, acceleration, slope_depth, slope_speed)
+    slope_depth, slope_speed, speeds = work[0], work[1], work[18]
     dry = DRY * table.area[table.area.size - 1]
+    for i in range(cells):
+        speeds[i] = flow[i] / area[i] if area[i] > dry else 0.0
+    _slopes(liquid, area, depth, speeds, still, acceleration, slope_depth, slope_speed)
     tilt = acceleration * spacing / gravity
-    depth_b = area_b = flow_b = pressure_b = 0.0
+    depth_b = area_b = speed_b = pressure_b = 0.0
     width_b = 1.0
     fastest = 1e-9
     push[0] = push[1] = 0.0
     for i in range(cells):
         wet = area[i] > dry
-        speed = flow[i] / area[i] if wet else 0.0
         below = max(depth[i] - 0.5 * slope_depth[i], 0.0) if wet else 0.0
         above = max(depth[i] + 0.5 * slope_depth[i], 0.0) if wet else 0.0
         area_l, pressure_l, width_l = section_at(table, below)
         area_r, pressure_r, width_r = section_at(table, above)
-        flow_l = area_l * (speed - 0.5 * slope_speed[i])
-        flow_r = area_r * (speed + 0.5 * slope_speed[i])
+        speed_l = speeds[i] - 0.5 * slope_speed[i]
+        speed_r = speeds[i] + 0.5 * slope_speed[i]
         jump = 0.0
         if i == 0:  # the wall mirrors the state
-            area_b, flow_b, pressure_b, width_b = area_l, -flow_l, pressure_l, width_l
+            area_b, speed_b, pressure_b, width_b = area_l, -speed_l, pressure_l, width_l
         if i > 0 and still[i - 1] + still[i] > 0.0 and at[i] != CLOSED:
             mass[i] = 0.0
             momentum[i], signal = _column_face(
                 gravity,
                 still[i - 1],
                 area_b,
-                flow_b,
+                speed_b,
                 pressure_b,
                 width_b,
                 still[i],
                 area_l,
-                flow_l,
+                speed_l,
                 pressure_l,
                 width_l,
             )
@@ -213,12 +213,12 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
                 at[i],
                 depth_b,
                 area_b,
-                flow_b,
+                speed_b,
                 pressure_b,
                 width_b,
                 below,
                 area_l,
-                flow_l,
+                speed_l,
                 pressure_l,
                 width_l,
             )
@@ -232,21 +232,21 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
             push[1] += _turning(liquid, at[i], still, depth, i, depth_b, below, before, after)
         else:
             mass[i], momentum[i], signal = _hll(
-                gravity, area_b, flow_b, pressure_b, width_b, area_l, flow_l, pressure_l, width_l
+                gravity, area_b, speed_b, pressure_b, width_b, area_l, speed_l, pressure_l, width_l
             )
         fastest = max(fastest, signal if i > 0 or still[0] == 0.0 else 0.0)
         surface_slope = slope_depth[i] + tilt
         mean_area = (area_l + 4.0 * area[i] + area_r) / 6.0 if surface_slope != 0.0 else 0.0
         source[i] = (gravity * (pressure_r - pressure_l - mean_area * surface_slope) + jump) / spacing
-        depth_b, area_b, flow_b, pressure_b, width_b = above, area_r, flow_r, pressure_r, width_r
+        depth_b, area_b, speed_b, pressure_b, width_b = above, area_r, speed_r, pressure_r, width_r
     _, momentum[cells], signal = _hll(
-        gravity, area_b, flow_b, pressure_b, width_b, area_b, -flow_b, pressure_b, width_b
+        gravity, area_b, speed_b, pressure_b, width_b, area_b, -speed_b, pressure_b, width_b
     )
     mass[0] = mass[cells] = 0.0
     after, before = (1.0 - still[0]) * momentum[0], (1.0 - still[cells - 1]) * momentum[cells]
     push[0] += before - after
     push[1] += before * pressure_height(table, depth[cells - 1]) - after * pressure_height(table, depth[0])
     if liquid.disperses:
-        disperse(liquid, area, flow, depth, still, dry, work[18:], mass, momentum, source, push)
+        disperse(liquid, area, flow, depth, still, dry, work[19:], mass, momentum, source, push)
     column_push(liquid, area, acceleration, momentum, still, push)
     return max(fastest, signal) if still[cells - 1] == 0.0 else fastest
