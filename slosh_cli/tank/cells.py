@@ -11,9 +11,9 @@ the ledger misses falls with orders 1.5 to 0.7, a bore's arrival at a wall being
 What walls push within a step depends on the tank's acceleration in it, like the force of a mass that goes along: the
 added mass of what waves reach from the walls in that time. A push from the last acceleration alone lets the coupling
 swing up where that is more than a third of the wagon's own mass (P. Causin, J.-F. Gerbeau and F. Nobile, Comput.
-Methods Appl. Mech. Eng. 194 (2005) 4506-4527). So where it is not small beside it, the added mass is measured, by
-carrying the liquid through the step a second time, and goes into the stages' equations: the push then follows the
-stage's own acceleration (a quasi-Newton coupling; J. Degroote, Arch. Comput. Methods Eng. 20 (2013) 185-238).
+Methods Appl. Mech. Eng. 194 (2005) 4506-4527). So where it is not small beside it, the added mass is measured, by a
+second run of the liquid through the step, and goes into the stages' equations: the push follows the stage's own
+acceleration (J. Degroote, Arch. Comput. Methods Eng. 20 (2013) 185-238). Dispersion always has one.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _LEAST_CHANGE = 1e-3
 
 
 class CellLiquid(Slosh):
-    """The shallow-water liquid of half a tank in a wagon. A liquid by `liquid`'s contract.
+    """The shallow-water liquid of half a tank in a wagon, by `liquid`'s contract.
 
     `start`, `end` are its cells at a step's ends; `work` (WORK_ROWS, cells + 1) and `sums` (4,) are scratch. The
     wagon's accelerations at the still liquid's centre are `by_force` per newton along x at the tank's bottom centre and

@@ -15,8 +15,8 @@ from slosh_cli.compiled import kernel
 from slosh_cli.section import PolygonalSection, Section
 
 _NODES = 400
-"""Depths of the table, crowded towards bottom and roof where the width varies fastest."""
-_BINS = 2048
+"""Intervals of the table, crowded towards bottom and roof where the width varies fastest."""
+_BINS = 4096
 """Equal parts of depth and area that tell where the search for a node starts."""
 LEDGE = 1e-9
 """Either side of a corner's level, by this part of the section's height, lies a node: the width may jump there."""
@@ -28,9 +28,11 @@ class SectionTable(Block):
     The roof is at `roof` (m); up to there the section holds `full_area` (m^2).
 
     `area` m^2, `width` m, `first` = INT z b dz m^3, `pressure` = INT (h - z) b dz m^3 (the moment I1 of the
-    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `curves` (K - 1, 10): of each interval the depth at
-    its start, one over its length, and the coefficients of the cubics of area and pressure in the part passed. `depth_start`, `area_start` (_BINS + 1,): the
-    last node not beyond the start of each of as many equal parts of depth and area.
+    equations) and `pressure_arm` = INT (h - z) z b dz m^4, each (K,). `curves` (K - 1, 10): of each interval the depth
+    at its start, one over its length, and the coefficients of the cubics of area and pressure in the part passed.
+    `across` and `gain` (K,) m^4 are of the motion across the section (`dispersion`). `depth_start`, `area_start`
+    (_BINS + 1,): the last node not beyond the start of each of as many parts of depth and area, of which there are
+    `per_depth` 1/m and `per_area` 1/m^2.
     """
 
     depth: Vector
@@ -44,6 +46,8 @@ class SectionTable(Block):
     gain: Vector
     depth_start: Integers
     area_start: Integers
+    per_depth: float
+    per_area: float
     slot_width: float
     roof: float
     full_area: float
@@ -59,7 +63,8 @@ def _slot_start(section: Section, slot_width: float) -> float:
 
 def _nodes(section: Section, top: float) -> Vector:
     """Depths (m) of the table up to `top`; a polygon's corners are among them, so that no interval has one inside."""
-    depth = 0.5 * top * (1 - np.cos(np.linspace(0, np.pi, _NODES)))
+    half = 0.5 * top * np.linspace(0.0, 1.0, _NODES // 2 + 1) ** 2
+    depth = np.concatenate([half, top - half[-2::-1]])
     if not isinstance(section, PolygonalSection):
         return depth
     beside = LEDGE * section.height
@@ -70,10 +75,9 @@ def _nodes(section: Section, top: float) -> Vector:
 
 
 def _starts(places: Vector) -> Integers:
-    """Last node not beyond the start of each bin, one bin early so that rounding cannot pass it by."""
-    edges = np.linspace(0.0, float(places[-1]), _BINS + 1)
-    found = np.searchsorted(places, edges, side="right") - 1
-    return np.asarray(np.maximum(found - 1, 0), dtype=np.int64)
+    """Last node not beyond the start of each bin, short of it by rounding."""
+    edges = np.linspace(0.0, float(places[-1]), _BINS + 1) - 1e-12 * places[-1]
+    return np.asarray(np.maximum(np.searchsorted(places, edges, side="right") - 1, 0), dtype=np.int64)
 
 
 def _across(depth: Vector, area: Vector, width: Vector) -> tuple[Vector, Vector]:
@@ -126,6 +130,8 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
         gain=gain,
         depth_start=_starts(depth),
         area_start=_starts(area),
+        per_depth=_BINS / float(depth[-1]),
+        per_area=_BINS / float(area[-1]),
         slot_width=slot_width,
         roof=section.height,
         full_area=section.area(section.height),
@@ -133,10 +139,9 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
 
 
 @kernel
-def _node(places, start, place):
+def _node(places, start, bins_per, place):
     """Last of the `places` (K,) not beyond `place`, searched from its bin's `start`."""
-    bins = start.size - 1
-    node = start[min(int(bins * place / places[places.size - 1]), bins)]
+    node = start[int(bins_per * place)]
     while node < places.size - 2 and places[node + 1] <= place:
         node += 1
     return node
@@ -151,7 +156,7 @@ def depth_of(table, area):
         return depths[last] + (area - areas[last]) / table.slot_width
     if area <= 0.0:
         return 0.0
-    k = _node(areas, table.area_start, area)
+    k = _node(areas, table.area_start, table.per_area, area)
     curve = table.curves[k]
     first, second, third = curve[3], curve[4], curve[5]
     wanted, whole = area - curve[2], first + second + third
@@ -169,21 +174,34 @@ def depth_of(table, area):
 
 
 @kernel
-def section_at(table, depth):
-    """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
-    depths = table.depth
-    last = depths.size - 1
-    if depth >= depths[last]:
-        head, slot, area = depth - depths[last], table.slot_width, table.area[last]
-        return area + slot * head, table.pressure[last] + head * (area + 0.5 * slot * head), slot
+def section_in(curves, starts, bins_per_metre, top, full, pressed, slot, depth):
+    """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m): `section_at` for loops.
+
+    Takes the table's `curves`, `depth_start` and `per_depth`, depth, area and moment at its last node, and the width of
+    the slot.
+    """
+    if depth >= top:
+        head = depth - top
+        return full + slot * head, pressed + head * (full + 0.5 * slot * head), slot
     if depth <= 0.0:
         return 0.0, 0.0, 1.0
-    curve = table.curves[_node(depths, table.depth_start, depth)]
-    part = (depth - curve[0]) * curve[1]
-    area = curve[2] + part * (curve[3] + part * (curve[4] + part * curve[5]))
-    width = (curve[3] + part * (2.0 * curve[4] + 3.0 * part * curve[5])) * curve[1]
-    pressure = curve[6] + part * (curve[7] + part * (curve[8] + part * curve[9]))
+    k = starts[int(bins_per_metre * depth)]
+    while k < curves.shape[0] - 1 and curves[k + 1, 0] <= depth:
+        k += 1
+    part = (depth - curves[k, 0]) * curves[k, 1]
+    a1, a2, a3 = curves[k, 3], curves[k, 4], curves[k, 5]
+    area = curves[k, 2] + part * (a1 + part * (a2 + part * a3))
+    width = (a1 + part * (2.0 * a2 + 3.0 * part * a3)) * curves[k, 1]
+    pressure = curves[k, 6] + part * (curves[k, 7] + part * (curves[k, 8] + part * curves[k, 9]))
     return area, pressure, max(width, 1e-12)
+
+
+@kernel
+def section_at(table, depth):
+    """Area (m^2), moment I1 (m^3) and surface width (m) at a depth (m)."""
+    last = table.depth.size - 1
+    top, full, pressed = table.depth[last], table.area[last], table.pressure[last]
+    return section_in(table.curves, table.depth_start, table.per_depth, top, full, pressed, table.slot_width, depth)
 
 
 @kernel
@@ -193,7 +211,7 @@ def across_at(table, depth):
     last = depths.size - 1
     if depth <= 0.0 or depth >= depths[last]:
         return 0.0, 0.0
-    k = _node(depths, table.depth_start, depth)
+    k = _node(depths, table.depth_start, table.per_depth, depth)
     part = (depth - depths[k]) / (depths[k + 1] - depths[k])
     across = table.across[k] + part * (table.across[k + 1] - table.across[k])
     return across, table.gain[k] + part * (table.gain[k + 1] - table.gain[k])
@@ -234,7 +252,7 @@ def pressure_height(table, depth):
         head = depth - table.depth[last]
         arm = table.pressure_arm[last] + head * table.first[last]
         return arm / (table.pressure[last] + head * table.area[last])
-    k = _node(table.depth, table.depth_start, depth)
+    k = _node(table.depth, table.depth_start, table.per_depth, depth)
     area, pressure, _ = section_at(table, depth)
     part = (depth - table.depth[k]) * table.curves[k, 1]
     arm = table.pressure_arm[k] + part * (table.pressure_arm[k + 1] - table.pressure_arm[k])

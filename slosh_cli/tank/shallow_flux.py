@@ -13,7 +13,7 @@ from slosh_cli.compiled import kernel
 from slosh_cli.tank.baffle import CLOSED, passing_part, solid_height
 from slosh_cli.tank.dispersion import disperse
 from slosh_cli.tank.roof import column_push
-from slosh_cli.tank.section_table import LEDGE, pressure_height, section_at
+from slosh_cli.tank.section_table import LEDGE, pressure_height, section_in
 
 DRY = 1e-7
 """A cell with less than this part of the full section's area holds still."""
@@ -62,8 +62,8 @@ def _hll(gravity, area_l, speed_l, pressure_l, width_l, area_r, speed_r, pressur
 
 
 @kernel
-def _slopes(liquid, area, depth, speeds, still, acceleration, slope_depth, slope_speed):
-    """Limited changes over a cell of depth (m, the still tilt included) and speed (m/s).
+def _slopes(liquid, area, flow, depth, speeds, still, acceleration, slope_depth, slope_speed):
+    """Speeds of the cells (m/s), and limited changes over a cell of depth (m, the still tilt included) and speed.
 
     Closed bulkheads and columns at rest (`still`) are walls.
     """
@@ -77,6 +77,8 @@ def _slopes(liquid, area, depth, speeds, still, acceleration, slope_depth, slope
     tilt = acceleration * liquid.spacing / gravity
     last = table.area.size - 1
     dry, roof = DRY * table.area[last], table.depth[last]
+    for i in range(cells):
+        speeds[i] = flow[i] / area[i] if area[i] > dry else 0.0
     for i in range(cells):
         speed = speeds[i]
         surface_b = surface_a = 0.0
@@ -159,6 +161,15 @@ def _column_face(gravity, still_l, area_l, speed_l, pressure_l, width_l, still_r
 
 
 @kernel
+def _push_walls(liquid, depth, still, momentum, push):
+    """Add what the end walls bear to `push` (2,); a column at rest bears on its wall by `column_push`."""
+    table, last = liquid.table, liquid.cells - 1
+    after, before = (1.0 - still[0]) * momentum[0], (1.0 - still[last]) * momentum[last + 1]
+    push[0] += before - after
+    push[1] += before * pressure_height(table, depth[last]) - after * pressure_height(table, depth[0])
+
+
+@kernel
 def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum, source, push):
     """Fluxes of mass and momentum through the faces (cells + 1,), and the momentum source (cells,) of the tilt.
 
@@ -173,10 +184,11 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
     at = liquid.baffles.at
     slope_depth, slope_speed, speeds = work[0], work[1], work[18]
     dry = DRY * table.area[table.area.size - 1]
-    for i in range(cells):
-        speeds[i] = flow[i] / area[i] if area[i] > dry else 0.0
-    _slopes(liquid, area, depth, speeds, still, acceleration, slope_depth, slope_speed)
+    _slopes(liquid, area, flow, depth, speeds, still, acceleration, slope_depth, slope_speed)
     tilt = acceleration * spacing / gravity
+    curves, starts, per_depth, slot = table.curves, table.depth_start, table.per_depth, table.slot_width
+    last = table.depth.size - 1
+    top, full, pressed = table.depth[last], table.area[last], table.pressure[last]
     depth_b = area_b = speed_b = pressure_b = 0.0
     width_b = 1.0
     fastest = 1e-9
@@ -185,8 +197,8 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         wet = area[i] > dry
         below = max(depth[i] - 0.5 * slope_depth[i], 0.0) if wet else 0.0
         above = max(depth[i] + 0.5 * slope_depth[i], 0.0) if wet else 0.0
-        area_l, pressure_l, width_l = section_at(table, below)
-        area_r, pressure_r, width_r = section_at(table, above)
+        area_l, pressure_l, width_l = section_in(curves, starts, per_depth, top, full, pressed, slot, below)
+        area_r, pressure_r, width_r = section_in(curves, starts, per_depth, top, full, pressed, slot, above)
         speed_l = speeds[i] - 0.5 * slope_speed[i]
         speed_r = speeds[i] + 0.5 * slope_speed[i]
         jump = 0.0
@@ -243,9 +255,7 @@ def fluxes(liquid, area, flow, depth, still, acceleration, work, mass, momentum,
         gravity, area_b, speed_b, pressure_b, width_b, area_b, -speed_b, pressure_b, width_b
     )
     mass[0] = mass[cells] = 0.0
-    after, before = (1.0 - still[0]) * momentum[0], (1.0 - still[cells - 1]) * momentum[cells]
-    push[0] += before - after
-    push[1] += before * pressure_height(table, depth[cells - 1]) - after * pressure_height(table, depth[0])
+    _push_walls(liquid, depth, still, momentum, push)
     if liquid.disperses:
         disperse(liquid, area, flow, depth, still, dry, work[19:], mass, momentum, source, push)
     column_push(liquid, area, acceleration, momentum, still, push)
