@@ -147,8 +147,10 @@ def frequency_excess(tank: _FlowingTank, gravity: float) -> float:
     """How much too high shallow water's first frequency is, by potential flow in this very section.
 
     It is that of the longest part between closed bulkheads. Where the section has no finite-element mesh, that of a box
-    of the same mean depth h = A/B: `sqrt(kh/tanh kh) - 1`.
+    of the same mean depth h = A/B: `sqrt(kh/tanh kh) - 1`. With dispersion it is that of potential flow.
     """
+    if tank.liquid.dispersion == "on":
+        return 0.0
     section = section_of(tank)
     depth = tank.fill * section.height
     mean_depth = section.area(depth) / section.surface_width(depth)
