@@ -159,10 +159,10 @@ class Searched:
     def stem(self) -> str:
         """Name of its files."""
         asked = self.search.asked
-        words = asked.words if asked.sign or asked.name == LOCK else f"optimum-{asked.name}"
-        return "".join(
-            letter if letter.isalnum() or letter in "._=-" else "-" for letter in f"{self.search.span.key}-{words}"
-        )
+        best = "-".join(["optimum", asked.name, *(one.words for one in self.search.limits)])
+        words = asked.words if asked.sign or asked.name == LOCK else best
+        words = words.replace("<=", "-to-").replace(">=", "-from-")
+        return re.sub(r"[^\w.=-]+", "-", f"{self.search.span.key}-{words}")[:150]
 
 
 def find_search(

@@ -61,7 +61,7 @@ def _lines(found: "Searched") -> list[str]:
     search = found.search
     if found.best is not None:
         low, high = found.flat or (found.best.x, found.best.x)
-        lines = [f"{'most' if search.most else 'least'} {search.asked.label}: {_side(found, found.best)}"]
+        lines = [f"{'Largest' if search.most else 'Least'} at {search.span.key} {_side(found, found.best)}"]
         lines.append(f"It lies {_HELD[found.kind]}.")
         if high > low and found.kind == "inside":
             lines.append(
@@ -90,11 +90,13 @@ def _lines(found: "Searched") -> list[str]:
 def _side(found: "Searched", sample: Any) -> str:
     """``19.6 kN m: braking distance / m 334.33``, with what else there is to know."""
     told = found.side(sample)
-    value = "no answer" if told["answer"] is None else f"{told['answer']:.6g}"
+    asked = found.search.asked
+    what, unit = asked.label.partition(" / ")[0], "" if asked.unit == "1" else f" {asked.unit}"
+    value = "no answer" if told["answer"] is None else f"{what} {told['answer']:.6g}{unit}"
     distance = told["braking_distance_m"]
-    more = "" if distance is None or "braking distance" in found.search.asked.label else f", distance {distance:.2f} m"
+    more = "" if distance is None or what == "braking distance" else f", braking distance {distance:.2f} m"
     more += "" if told["status"] == "stopped" else f" ({told['status']})"
-    return f"{found.search.span.text(sample.x, 7)}: {found.search.asked.label} {value}{more}"
+    return f"{found.search.span.text(sample.x, 7)}: {value}{more}"
 
 
 def _tell_unanswered(found: "Searched") -> None:
