@@ -14,6 +14,7 @@ from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
     from slosh_cli.application.excitation import excite
+    from slosh_cli.application.finding import find, optimum
     from slosh_cli.application.plotting import plot
     from slosh_cli.application.stop import simulate
     from slosh_cli.application.studies import sweep
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from slosh_cli.scenario.train_file import load_train
 
 __all__ = [
-    "Result", "Scenario", "TrainResult", "__version__", "coefficients", "excite", "load_scenario", "load_train", "plot",
-    "simulate", "simulate_train", "sweep", "validate",
+    "Result", "Scenario", "TrainResult", "__version__", "coefficients", "excite", "find", "load_scenario", "load_train",
+    "optimum", "plot", "simulate", "simulate_train", "sweep", "validate",
 ]  # fmt: skip
 
 _HOMES = {
@@ -36,8 +37,10 @@ _HOMES = {
     "TrainResult": "slosh_cli.results.train_result",
     "coefficients": "slosh_cli.application.tank",
     "excite": "slosh_cli.application.excitation",
+    "find": "slosh_cli.application.finding",
     "load_scenario": "slosh_cli.scenario",
     "load_train": "slosh_cli.scenario.train_file",
+    "optimum": "slosh_cli.application.finding",
     "plot": "slosh_cli.application.plotting",
     "simulate": "slosh_cli.application.stop",
     "simulate_train": "slosh_cli.application.train",

@@ -194,12 +194,33 @@ def _with_unit(base: Scenario | TrainScenario, key: str, value: Any) -> Any:
     """A number with the SI unit in which the scenario tells its own value of `key`; anything else as it is."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
+    told = own_measure(base, key)
+    return f"{value!r} {told[1]}".rstrip() if told else value
+
+
+def own_measure(base: Scenario | TrainScenario, key: str) -> tuple[float, str] | None:
+    """The scenario's own value of `key` in SI and its unit, empty for a pure number; None where it is no number."""
     root, steps = (base, key) if isinstance(base, Scenario) else base.spot(key)
     own: Any = parse(scenario_to_yaml(root), base.name).data
     for step in steps.split("."):
         own = own.get(step) if isinstance(own, dict) else None
-    told = measured(own) if isinstance(own, str) else None
-    return f"{value!r} {told[1]}" if told else value
+    if isinstance(own, bool) or not isinstance(own, int | float | str):
+        return None
+    return measured(own) if isinstance(own, str) else (float(own), "")
+
+
+def study_along(source: Scenario | TrainScenario | str | Path, key: str, overrides: Sequence[str] = ()) -> Study:
+    """A study of a scenario or train, or of its file, in which nothing but `key` varies; its axis has no values yet.
+
+    Raises UsageError for the file of a study, and the errors of a file that cannot be used.
+    """
+    file, name, base, axes = _source(source, overrides)
+    if axes:
+        raise UsageError(f"{file} is a study, which varies keys already; give the scenario of its `base:`", file)
+    axis = (Axis(key, (), f"--vary {key}"),)
+    if isinstance(base, TrainScenario):
+        return TrainStudy(name, base, axis, file, kept=_kept(overrides, axis))
+    return WagonStudy(name, base, axis, file)
 
 
 def _with_axes(axes: Iterable[Axis], others: Iterable[Axis]) -> tuple[Axis, ...]:
