@@ -11,7 +11,9 @@ import typer
 from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
-_COMMANDS: Final = ("init", "check", "run", "sweep", "find", "optimum", "tank", "plot", "schema", "validate")
+_COMMANDS: Final = (
+    "init", "presets", "check", "run", "sweep", "find", "optimum", "tank", "plot", "schema", "validate",
+)  # fmt: skip
 """In the order of the help."""
 
 _EPILOG: Final = (

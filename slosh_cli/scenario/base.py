@@ -23,6 +23,8 @@ Path: TypeAlias = tuple[str | int, ...]
 """Keys, and places in lists from 0, from the root of a file to a value."""
 OWN: Final = "x-"
 """Top-level keys that begin so are the author's own, a place for anchors: nobody reads them."""
+USE: Final = "use"
+"""The key of a part that names a preset, or a list of them, of which the later ones hold."""
 _DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FROM_TEXT: Final = {"units_required": True}
 
@@ -83,6 +85,8 @@ class Part(BaseModel):
             tags = [name for name, entry in properties if "const" in entry and "default" in entry]
             if tags:
                 definition["required"] = [*tags, *definition.get("required", ())]
+            for name, entry in properties:
+                definition["properties"][name] = _with_use(entry)
             for _, entry in properties:
                 if entry.get("default", "") is None or isinstance(entry.get("default"), dict):
                     del entry["default"]  # computed or a whole part: the descriptions say how
@@ -168,6 +172,19 @@ class Aliased(Part):
     @classmethod
     def _read_aliases(cls, data: Any) -> Any:
         return cls.with_fields(data) if isinstance(data, dict) else data
+
+
+def _with_use(entry: dict[str, Any]) -> dict[str, Any]:
+    """The editor's schema of a field, which may name a preset where it is a part; the loader checks what it gives."""
+    if not any("$ref" in member for member in (entry, *entry.get("anyOf", ()), *entry.get("oneOf", ()))):
+        return entry
+    names = {"oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
+    used = {"type": "object", "required": [USE], "properties": {USE: names}}
+    if "anyOf" in entry:
+        return entry | {"anyOf": [*entry["anyOf"], used]}
+    apart = {word: entry[word] for word in ("description", "title", "default") if word in entry}
+    form = {word: said for word, said in entry.items() if word not in apart}
+    return apart | {"anyOf": [form, used]}
 
 
 @cache

@@ -14,17 +14,18 @@ from slosh_cli.scenario.units import plain
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a value comes from: a line of the file, or an override as the user wrote it."""
+    """Where a value comes from: a line of the file, or an override as the user wrote it; of a preset, of its `use`."""
 
     line: int | None = None
     override: str = ""
+    preset: str = ""
 
 
 @dataclass
 class Document:
     """Mappings, lists and scalars with their `origins` by path, the `problems` and `overrides` so far.
 
-    `original` is a copy of the data before any override.
+    `original` is a copy of the data before any override. Parts at `unfilled` paths name a preset that there is not.
     """
 
     data: Any = None
@@ -32,6 +33,7 @@ class Document:
     origins: dict[Path, Origin] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     overrides: list[str] = field(default_factory=list)
+    unfilled: list[Path] = field(default_factory=list)
 
     def origin(self, path: Path) -> Origin:
         """Origin of the value at `path`, or of the nearest mapping around it."""
@@ -46,10 +48,15 @@ class Document:
         return bool(self.origin(path).override) or any(origin.override for origin in below)
 
     def add(self, finding: Finding) -> None:
-        """Keep a finding as a problem with its place."""
-        origin = self.origin(finding.path)
+        """Keep a finding as a problem with its place; what an unknown preset may have brought is not missed."""
+        origin, given = self.origin(finding.path), finding.given
+        if given == "nothing":
+            if any(finding.path[: len(path)] == path for path in self.unfilled):
+                return
+        elif origin.preset:
+            given += f" from the preset `{origin.preset}`"
         key = ".".join(str(step) for step in finding.path)
-        self.problems.append(Problem(origin.line, key, finding.rule, finding.given, finding.fix, origin.override))
+        self.problems.append(Problem(origin.line, key, finding.rule, given, finding.fix, origin.override))
 
     def sorted_problems(self) -> tuple[Problem, ...]:
         """All problems, those of the file by line, then those of overrides as they were given."""

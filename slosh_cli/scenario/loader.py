@@ -19,6 +19,7 @@ from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.leaves import Leaf
 from slosh_cli.scenario.packaged import packaged_scenarios
 from slosh_cli.scenario.plain_data import plain_data, si_values
+from slosh_cli.scenario.presets import TAKEN, expand
 from slosh_cli.scenario.rules import Values
 from slosh_cli.scenario.scalars import well_formed
 from slosh_cli.scenario.source import text_of
@@ -50,6 +51,24 @@ class _Version(Leaf):
         return {"const": self.supported}
 
 
+class _Taken(Leaf):
+    """Which preset gave the value at a key path."""
+
+    def sample(self) -> str:
+        return "{tank.length: zacns-like}"
+
+    def advice(self, key: str) -> str:
+        return f"write `{key}: {self.sample()}`, or leave it out"
+
+    def parse(self, value: object) -> Any:
+        if isinstance(value, dict) and all(isinstance(name, str) for name in value.values()):
+            return value
+        raise ValueRefused("must be a mapping of key paths to names of presets", plain(value), "leave it out")
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": {"type": "string"}}
+
+
 class Root(Part):
     """What every scenario file begins with."""
 
@@ -60,6 +79,13 @@ class Root(Part):
     description: Annotated[str, Text(longest=2000)] = Field(
         default="", description="What the scenario is, in a sentence or two."
     )
+    presets: Annotated[dict[str, Any], _Taken()] = Field(
+        default={}, description="What came from presets, key path to name; resolved scenarios state it."
+    )
+
+    def unwritten(self, *, as_text: bool) -> Collection[str]:  # noqa: ARG002 - the same for both
+        """What came from presets, where nothing did."""
+        return () if self.presets else (TAKEN,)
 
     @classmethod
     def of(cls, document: Document, file: str) -> Self:
@@ -116,6 +142,7 @@ class Root(Part):
                 _override(document, type(self), key, value, key)
             else:
                 _put(document, type(self), path, si_values(value), key)
+        expand(document, type(self))
         return document
 
 
@@ -141,6 +168,7 @@ def read(path: str | Path, overrides: Iterable[str], kind: Callable[[Any], type[
         fix = "write it like `--set 'braking.torque=12 kN m'`"
         document.overrides.append(f"--set {override}")
         document.problems.append(Problem(None, "", rule, f"`{override}`", fix, f"--set {override}"))
+    expand(document, kind(document.data))
     return document
 
 

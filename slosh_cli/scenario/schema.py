@@ -7,8 +7,10 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from slosh_cli.scenario.amounts import tare_of
+from slosh_cli.scenario.base import USE
 from slosh_cli.scenario.document import Document
 from slosh_cli.scenario.loader import Root, read
+from slosh_cli.scenario.presets import expand
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_limits import Limits
@@ -88,7 +90,12 @@ def load_tank_scenario(path: str | Path, overrides: Iterable[str] = ()) -> TankS
     if isinstance(found, TankScenario):
         return found
     return TankScenario(
-        format=found.format, name=found.name, description=found.description, tank=found.tank, limits=found.limits
+        format=found.format,
+        name=found.name,
+        description=found.description,
+        presets=found.presets,
+        tank=found.tank,
+        limits=found.limits,
     )
 
 
@@ -109,7 +116,9 @@ def _with_files_beside(document: Document, path: Path) -> Document:
 
 def parse_scenario(text: str, name: str = "scenario") -> Scenario:
     """The scenario of a stop from YAML text, as `scenario_to_yaml` writes it; `name` stands for the file."""
-    return Scenario.of(parse(text, name), name)
+    document = parse(text, name)
+    expand(document, Scenario)
+    return Scenario.of(document, name)
 
 
 def json_schema() -> dict[str, Any]:
@@ -119,7 +128,10 @@ def json_schema() -> dict[str, Any]:
     return schema | {
         "required": [name for name in schema["required"] if name not in parts],
         "if": {"anyOf": [{"required": [part]} for part in parts]},
-        "then": {"required": list(parts), "properties": {"tank": {"required": ["bottom_height"]}}},
+        "then": {
+            "required": list(parts),
+            "properties": {"tank": {"anyOf": [{"required": [key]} for key in ("bottom_height", USE)]}},
+        },
         "else": {"properties": dict.fromkeys(alone, False) | {"tank": {"properties": {"gross_mass": False}}}},
     }
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 RESULT_VERSION: Final = 4
 """Raise it whenever the same scenario would give another answer: journals then compute every stop anew."""
 
-_SAYS_NOTHING: Final = ("name", "description", "output")
+_SAYS_NOTHING: Final = ("name", "description", "presets", "output")
 """Parts of a scenario that its answer does not depend on."""
 
 
@@ -60,13 +60,15 @@ def _key(scenario: Scenario | TrainScenario, without: tuple[str, ...], version: 
         said, without = scenario.file, (*without, "vehicles")
     else:
         said = scenario
-    telling += [f'"{name}":{_text(part)}' for name, part in sorted(vars(said).items()) if name not in without]
+    without = without if said.presets else (*without, "presets")
+    parts = {name: part for name, part in sorted(vars(said).items()) if name not in without}
+    telling += [f'"{name}":{_text(tuple(p.items()) if isinstance(p, dict) else p)}' for name, p in parts.items()]
     number = RESULT_VERSION if version is None else version
     return hashlib.sha256(f"[{number},{{{','.join(telling)}}}]".encode()).hexdigest()
 
 
 @lru_cache(maxsize=256)
-def _text(part: Part | int | str | None) -> str:
+def _text(part: Part | tuple[Any, ...] | int | str | None) -> str:
     """JSON of a part, the same for the same values; the stops of a study share most parts."""
     data = plain_data(part, as_text=True) if isinstance(part, Part) else part
     return json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)

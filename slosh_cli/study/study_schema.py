@@ -9,6 +9,7 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from slosh_cli.scenario import Scenario, json_schema
+from slosh_cli.scenario.presets import TAKEN
 from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.tree import Spot, spot_of
 from slosh_cli.scenario.words import Choice
@@ -73,6 +74,8 @@ def _keys(spot: Spot, above: str = "", field: FieldInfo | None = None) -> Iterat
     """Key path, description and spot of all that can vary: single values, parts as a whole, items of lists."""
     for found in (spot, *(spot.branches or {}).values()):
         for name, entry in found.part.model_fields.items() if found.part else ():
+            if name == TAKEN and not above:
+                continue
             inner = spot_of(found.part, name)
             yield above + name, entry.description, inner
             yield from _keys(inner, f"{above}{name}.", entry)

@@ -172,3 +172,61 @@ def test_plot_of_something_else_is_the_users_matter(slosh: Slosh, tmp_path: Path
 def test_the_name_of_a_new_scenario_can_name_a_folder(slosh: Slosh) -> None:
     assert slosh("init", "-o", "my wagon (2).yaml").code == ExitCode.DONE
     assert load_scenario("my wagon (2).yaml").name == "my-wagon-2"
+
+
+_OF_PRESETS = ["init", "--wagon", "zacns-like", "--product", "petrol", "--temperature", "30 C", "--gross", "75t"]
+
+
+def test_init_writes_a_scenario_of_presets_and_never_overwrites(slosh: Slosh, tmp_path: Path) -> None:
+    file = tmp_path / "my.yaml"
+    assert slosh(*_OF_PRESETS, "-o", str(file)).code == 0
+    scenario = load_scenario(file)
+    assert (scenario.name, scenario.tank.liquid.density, scenario.tank.gross_mass) == ("my", 731.4, 75000.0)
+    assert scenario.braking.initial_speed == pytest.approx(100.0 / 3.6)
+    before = file.read_text(encoding="utf-8")
+    assert slosh(*_OF_PRESETS, "-o", str(file)).code == 2
+    assert file.read_text(encoding="utf-8") == before
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--gross", "120 t"], "the tank holds"),
+        (["--wagon", "zacn"], "did you mean `zacns-like`?"),
+        (["--temperature", "90"], "must be from -20 to 50 C"),
+        (["--product", "k-blocks"], "must be the name of a product preset"),
+        (["tank-wagon"], "must stand alone"),
+    ],
+)
+def test_init_writes_nothing_that_is_not_sound(options: list[str], told: str, slosh: Slosh, tmp_path: Path) -> None:
+    file = tmp_path / "my.yaml"
+    found = slosh(*_OF_PRESETS, *options, "-o", str(file))
+    assert (found.code, file.exists()) == (2, False)
+    assert told in found.err
+
+
+def test_init_asks_on_a_terminal_and_nowhere_else(
+    slosh: Slosh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = {"Wagon": "15-9049", "Mass": "80 t"}
+
+    def prompt(question: str, default: str | None) -> str:
+        return default or answers[question.split(maxsplit=1)[0]]
+
+    monkeypatch.setattr("typer.prompt", prompt)
+    assert slosh("init").code == 0
+    assert (tmp_path / "tank-wagon.yaml").exists()
+    monkeypatch.setattr("slosh_cli.cli.init._on_a_terminal", lambda: True)
+    assert slosh("init").code == 0
+    assert load_scenario(tmp_path / "15-9049-diesel.yaml").wagon.pivot_spacing == 7.8
+
+
+def test_presets_are_listed_and_printed_with_their_sources(slosh: Slosh) -> None:
+    assert "15-9049" in slosh("presets").out
+    told = slosh("presets", "15-9049").out
+    assert "wagon.pivot_spacing: 7.8 m  [published: data sheet of the wagon]" in told
+    listed = json.loads(slosh("presets", "--json").out)["presets"]
+    assert {entry["kind"] for entry in listed} == {"wagon", "bogie", "track", "product", "brake"}
+    assert json.loads(slosh("presets", "diesel", "--json").out)["un"] == 1202
+    refused = slosh("presets", "dieesl")
+    assert (refused.code, "did you mean `diesel`?" in refused.err) == (2, True)
