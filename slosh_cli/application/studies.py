@@ -218,7 +218,8 @@ def sweep(
     """Run a grid of stops, liquid and equivalent solid each; without a scenario of the paper's wagon.
 
     `vary` is key path -> values: a list or a range as a text (``"2.5:30:2.5 kN m"``), or a sequence of texts and SI
-    numbers; without it the grid is that of the paper's Figure 3. The file of a study will do for a scenario. With a
+    numbers; without it a few values around the scenario's own speed and torque, without a scenario the grid of the
+    paper's Figure 3. The file of a study will do for a scenario. With a
     `folder` the files are those of `slosh sweep`, and stops that lie there already are not computed again. `threads`
     default to the cores; `cluster` is the address of a Dask scheduler instead. `progress` is told how many stops of how
     many are done; once `cancel` is set, the result has the stops that were done by then.

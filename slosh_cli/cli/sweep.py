@@ -16,11 +16,11 @@ _ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREAD
 
 _FILE: Final = "Scenario, train or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
 _ScenarioOrStudy = Annotated[Path | None, typer.Argument(metavar="SCENARIO", help=_FILE, show_default=False)]
-_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary
-alone, the scenario's own."""
+_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: three around
+the scenario's own, 80,160 without SCENARIO; with --vary alone, the scenario's own."""
 _Speeds = Annotated[str | None, option("--v0", "LIST", _SPEEDS)]
-_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both
-ends in); with --vary alone, the scenario's own."""
+_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: six around the
+scenario's own, 2.5:30:2.5 (start:stop:step, both ends in) without SCENARIO; with --vary alone, the scenario's own."""
 _Torques = Annotated[str | None, option("--torque", "LIST", _TORQUES)]
 _VARY: Final = """Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m',
 --vary contact.adhesion=dry,wet. Of a train: all.KEY, vehicles.N.KEY or a key of its own, --vary
