@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping, default_folder, free_folder
 from slosh_cli.errors import SloshError, UsageError
-from slosh_cli.report.study_pages import Page, figure_files, named, pages
+from slosh_cli.report.study_pages import Page, View, figure_files, named, pages
 from slosh_cli.results.result import Status
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.train_file import TrainScenario
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from slosh_cli.application.plotting import Figures
     from slosh_cli.study.claims import Verdict
 
+_AS_FITS: Final = View()
 _MOST_PAGES: Final = 12
 
 
@@ -87,13 +88,13 @@ class OpenStudy:
         write = {TABLE: lambda path: write_rows(names(self.rows()), self.rows(), path)}
         return next(iter(keeping.keep(self.folder, [TABLE, *figure_files(self.folder)], write, {})), None)
 
-    def keep_figures(self, keeping: Keeping, more: Callable[[int, int], None]) -> list[str]:
+    def keep_figures(self, keeping: Keeping, more: Callable[[int, int], None], view: View = _AS_FITS) -> list[str]:
         """Draw the figures; returns those that are there, as paths.
 
         `more` is told how many would be needed and how many are drawn, where these differ.
         """
         with keeping.part("the figures"):
-            drawn = _pages(self.study, self.rows(), more)
+            drawn = _pages(self.study, self.rows(), more, view)
             if drawn:
                 from slosh_cli.report.study_figures import draw_study
 
@@ -152,9 +153,11 @@ def study_folder(study: Study, given: Path | None, settings: Sequence[str] | Non
     return given or free_folder(default_folder(study.name, settings), fits, note)
 
 
-def _pages(study: Study, found: Iterator[dict[str, Any]], more: Callable[[int, int], None]) -> list[Page]:
+def _pages(
+    study: Study, found: Iterator[dict[str, Any]], more: Callable[[int, int], None], view: View = _AS_FITS
+) -> list[Page]:
     """The figures of a study, no more than can be looked at."""
-    drawn = pages(study, found)
+    drawn = pages(study, found, view)
     if len(drawn) > _MOST_PAGES:
         more(len(drawn), _MOST_PAGES)
     return drawn[:_MOST_PAGES]
@@ -218,7 +221,8 @@ def sweep(
     """Run a grid of stops, liquid and equivalent solid each; without a scenario of the paper's wagon.
 
     `vary` is key path -> values: a list or a range as a text (``"2.5:30:2.5 kN m"``), or a sequence of texts and SI
-    numbers; without it the grid is that of the paper's Figure 3. The file of a study will do for a scenario. With a
+    numbers; without it a few values around the scenario's own speed and torque, without a scenario the grid of the
+    paper's Figure 3. The file of a study will do for a scenario. With a
     `folder` the files are those of `slosh sweep`, and stops that lie there already are not computed again. `threads`
     default to the cores; `cluster` is the address of a Dask scheduler instead. `progress` is told how many stops of how
     many are done; once `cancel` is set, the result has the stops that were done by then.

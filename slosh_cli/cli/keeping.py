@@ -24,15 +24,25 @@ def told(keeping: Keeping, code: ExitCode = ExitCode.DONE) -> ExitCode:
     return ExitCode.BAD_INPUT if keeping.failures and code is ExitCode.DONE else code
 
 
-def answered(result: "Result | TrainResult", files: Mapping[str, Any], keeping: Keeping, *, as_json: bool) -> ExitCode:
-    """Tell the end of a run: with `as_json` the whole answer, else where its `files` lie; returns the exit code."""
+def answered(
+    result: "Result | TrainResult",
+    files: Mapping[str, Any],
+    keeping: Keeping,
+    *,
+    as_json: bool,
+    more: Mapping[str, Any] | None = None,
+) -> ExitCode:
+    """Tell the end of a run: with `as_json` the whole answer with what is `more`, else where its `files` lie.
+
+    Returns the exit code.
+    """
     from slosh_cli.cli.summary import show_files
     from slosh_cli.results.result import Status
 
     stopped = result.status is Status.STOPPED
     if as_json:
         answer = result.summary()
-        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files})
+        say_json(answer | {"warnings": [*answer["warnings"], *keeping.failures], "files": files} | dict(more or {}))
         for warning in result.warnings:
             warn(warning)
         if not stopped:

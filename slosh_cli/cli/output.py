@@ -41,12 +41,15 @@ def say_json(value: Mapping[str, Any]) -> None:
     _to_stdout(json.dumps(_strict(value), allow_nan=False, indent=2) + "\n")
 
 
-def show(*renderables: "RenderableType") -> None:
-    """Print tables and other things of rich to stdout."""
+def show(*renderables: "RenderableType", whole: bool = False) -> None:
+    """Print tables and other things of rich to stdout; `whole`: rather too wide than cut."""
     from rich.console import Console
 
     console = Console(highlight=False)
     try:
+        if whole:
+            free = console.options.update(max_width=10_000)
+            console.width = max(console.width, *(console.measure(one, options=free).maximum for one in renderables))
         with console.capture() as capture:
             console.print(*renderables, sep="\n")
     except OSError as error:  # rich looks whether stdout is still there

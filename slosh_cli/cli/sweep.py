@@ -16,11 +16,11 @@ _ONE_THREAD: Final = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREAD
 
 _FILE: Final = "Scenario, train or study file (YAML; a study has base: and vary:). Default: the wagon of the paper."
 _ScenarioOrStudy = Annotated[Path | None, typer.Argument(metavar="SCENARIO", help=_FILE, show_default=False)]
-_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: 80,160; with --vary
-alone, the scenario's own."""
+_SPEEDS: Final = """Initial speeds, in km/h where no unit is given: a list or a range. Default: three around
+the scenario's own, 80,160 without SCENARIO; with --vary alone, the scenario's own."""
 _Speeds = Annotated[str | None, option("--v0", "LIST", _SPEEDS)]
-_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: 2.5:30:2.5 (start:stop:step, both
-ends in); with --vary alone, the scenario's own."""
+_TORQUES: Final = """Brake torques per wheel, in kN m where no unit is given. Default: six around the
+scenario's own, 2.5:30:2.5 (start:stop:step, both ends in) without SCENARIO; with --vary alone, the scenario's own."""
 _Torques = Annotated[str | None, option("--torque", "LIST", _TORQUES)]
 _VARY: Final = """Vary any key of the scenario: --vary tank.fill=0.2:0.9:0.1, --vary 'wagon.pivot_spacing=10:14:1 m',
 --vary contact.adhesion=dry,wet. Of a train: all.KEY, vehicles.N.KEY or a key of its own, --vary
@@ -35,6 +35,14 @@ _CLUSTER: Final = "Compute on the workers of a Dask scheduler, tcp://host:8786 (
 _ClusterAddress = Annotated[str | None, option("--cluster", "ADDRESS", _CLUSTER)]
 _Histories = Annotated[bool, typer.Option("--histories", help="Keep the history of every stop (HDF5).")]
 _Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what was computed before and start over.")]
+_SHOW: Final = """Answers to draw and to print instead of the distance: --show unloading,first_lock,distance, or any
+name of an answer in the table."""
+_Show = Annotated[str | None, option("--show", "LIST", _SHOW)]
+_Along = Annotated[str, option("--x", "KEY", "Key along the horizontal axis. Default: torque, else speed.")]
+_Curves = Annotated[str, option("--curves", "KEY", "Key that makes curves, beside the models of the load.")]
+_Panels = Annotated[
+    str, option("--panels", "KEY", "Key that makes panels. Default: speed, else the first that is left.")
+]
 _DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many stops and about how long, no more.")]
 
 
@@ -51,6 +59,10 @@ def sweep_command(
     histories: _Histories = False,
     fresh: _Fresh = False,
     dry_run: _DryRun = False,
+    show: _Show = None,
+    x: _Along = "",
+    curves: _Curves = "",
+    panels: _Panels = "",
     as_json: AsJson = False,
 ) -> ExitCode:
     """Run a grid of stops and compare liquid with solid (Figure 3).
@@ -64,11 +76,13 @@ def sweep_command(
     from slosh_cli.application.studies import study_folder
     from slosh_cli.cli.output import note
     from slosh_cli.cli.sweep_task import Task, carry_out, estimate
+    from slosh_cli.report.study_pages import View
     from slosh_cli.study.build import Wishes, build
 
     if jobs is not None and cluster is not None:
         raise UsageError("--jobs is for this machine; a cluster has its own threads: leave one of them out", "--jobs")
     study = build(Wishes(scenario_file, overrides or (), speeds, torques, vary or (), liquids, histories))
+    view = View(tuple(name.strip() for name in (show or "").split(",") if name.strip()), x, curves, panels)
     folder = study_folder(study, output, overrides, note)
-    task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began)
+    task = Task(study, folder, jobs, cluster, fresh=fresh, as_json=as_json, began=began, view=view)
     return estimate(task) if dry_run else carry_out(task)

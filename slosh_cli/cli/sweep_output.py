@@ -7,7 +7,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.cli.output import complain, note, say, show
-from slosh_cli.report.study_pages import name_of, unit_of, value_text
+from slosh_cli.report.study_answers import asked_for
+from slosh_cli.report.study_pages import View, name_of, unit_of, value_text
 from slosh_cli.results.result import Status
 from slosh_cli.study.axis import Axis
 from slosh_cli.study.plan import LIQUID, SOLID, SPEED, TORQUE, Study, TrainStudy
@@ -42,11 +43,13 @@ def _span(axis: Axis) -> str:
     return f"{axis.values[0]} to {axis.values[-1]} ({len(axis.values)} values)"
 
 
-def show_study(study: Study, rows: Iterable[_Row]) -> None:
+def show_study(study: Study, rows: Iterable[_Row], view: View) -> None:
     """Print the table and the most effective torques, to stdout."""
     rows = list(rows) if _lines(study) <= _MOST_LINES else []
-    if rows:
-        show(_table(study, rows))
+    if rows and view.show:
+        show(_answers_table(study, rows, view), whole=True)
+    elif rows:
+        show(_table(study, rows), whole=True)
         legend = _legend(study, rows)
         if legend:
             say(legend)
@@ -149,6 +152,27 @@ def _table(study: Study, rows: Sequence[_Row]) -> "Table":
         cells += [_distance(point.get(model), best) for model in models]
         cells += [_ratio(point.get(model)) for model in liquids if SOLID in models]
         table.add_row(*cells)
+    return table
+
+
+def _answers_table(study: Study, rows: Sequence[_Row], view: View) -> "Table":
+    """One line per stop, with the answers that are asked for."""
+    from rich import box
+    from rich.table import Table
+
+    axes, shown = _told(study), asked_for(study, view.show)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    table.title, table.title_justify, table.title_style = study.name, "left", "bold"
+    heads = [(_SHORT.get(axis.key) or _short(axis, axes), unit_of(axis)) for axis in axes]
+    for name, unit in [*heads, ("load", ""), *((one.title.lower(), one.unit) for one in shown)]:
+        table.add_column(f"{name}\n{unit}", justify="right", no_wrap=True)
+    for row in rows:
+        cells = [value_text(axis, row).removesuffix(unit_of(axis)).strip() for axis in axes]
+        found = [value for one in shown for _, value in one.curves(row)]
+        ended = "-" if row["status"] == Status.STOPPED else str(row["status"])
+        table.add_row(
+            *cells, str(row.get("liquid", "train")), *(ended if value is None else f"{value:.5g}" for value in found)
+        )
     return table
 
 

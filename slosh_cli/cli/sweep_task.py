@@ -15,6 +15,7 @@ from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.keeping import told
 from slosh_cli.cli.output import note, say, say_json, warn
+from slosh_cli.report.study_pages import View, pages
 
 if TYPE_CHECKING:
     from slosh_cli.application.studies import OpenStudy
@@ -32,12 +33,14 @@ class Task:
     fresh: bool
     as_json: bool
     began: float
+    view: View
 
 
 def carry_out(task: Task) -> ExitCode:
     """Compute what the journal lacks, write table and figures; raises SloshError where the study cannot be begun."""
     from slosh_cli.application.studies import opened
 
+    pages(task.study, (), task.view)  # a view that cannot be is refused before anything runs
     with opened(task.study, task.folder, fresh=task.fresh) as work:
         interrupted = _compute(task, work)
         return _conclude(task, work, interrupted=interrupted)
@@ -123,10 +126,10 @@ def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
         raise KeyboardInterrupt
     claims = claim_text(work.claims())
     if not task.as_json:
-        show_study(task.study, work.rows())
+        show_study(task.study, work.rows(), task.view)
         if claims:
             say(claims)
-    figures = work.keep_figures(keeping, _some_of_them)
+    figures = work.keep_figures(keeping, _some_of_them, task.view)
     if task.as_json:
         _say_answer(task, written - failed, failed, work.planned.reused, table, figures, keeping.failures)
         if claims:

@@ -42,6 +42,7 @@ LOOKS: Final[Sequence[dict[str, Any]]] = (
 )
 OUTSIDE: Final = (0, (1, 1.8))
 """Line style of the way to and from a stop outside linear theory."""
+_LIMIT: Final = (0, (8, 3))
 _WITHOUT_ANSWER: Final = {Status.PITCH_LIMIT: "x", Status.TIME_LIMIT: "1", Status.FAILED: "+"}
 
 
@@ -114,7 +115,8 @@ def _beside(handles: Sequence[Line2D], width: float) -> int:
 def _looks(page: Page) -> dict[str, dict[str, Any]]:
     """Look of every model of the load; the solid has the second one wherever it stands in the list."""
     models = list(dict.fromkeys(model for panel in page.panels for model in panel.curves))
-    others = iter([LOOKS[0], *LOOKS[2:]] * len(models))
+    crowded = len(models) > len(LOOKS) - 1 and SOLID not in models
+    others = iter([*(LOOKS if crowded else (LOOKS[0], *LOOKS[2:]))] * len(models))
     return {model: LOOKS[1] if model == SOLID else next(others) for model in models}
 
 
@@ -122,10 +124,11 @@ def _draw_panel(axes: Axes, page: Page, panel: StopsPanel, looks: dict[str, dict
     """Draw the curves; returns the names of their lowest points."""
     for model, marks in sorted(panel.curves.items(), key=lambda curve: curve[0] != SOLID):  # the solid lies below
         _draw_curve(axes, marks, looks[model])
-        _draw_unanswered(axes, marks, looks[model])
-    _scale(axes, panel)
+        beneath = list(looks).index(model) if page.shown.asked else 0  # where a curve has none, others have none either
+        _draw_unanswered(axes, marks, looks[model], 0.965 - 0.04 * beneath)
+    _scale(axes, page.panels if page.shown.asked else [panel], page.shown.limit)
     labels = []
-    for model, marks in panel.curves.items():
+    for model, marks in panel.curves.items() if page.best else ():
         others = [mark for other, found in panel.curves.items() if other != model for mark in found]
         labels += _mark_best(axes, page, marks, looks[model], others)
     axes.set_title(panel.title, fontsize=13, fontweight="bold", loc="left", color=INK)
@@ -167,20 +170,29 @@ def _way(marks: Sequence[Mark], *, within: bool) -> tuple[list[float], list[floa
     return x, y
 
 
-def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any]) -> None:
+def _draw_unanswered(axes: Axes, marks: Sequence[Mark], look: dict[str, Any], height: float) -> None:
     for mark in marks:
         if mark.value is None:
             axes.plot(
-                [mark.x], [0.965], marker=_WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
+                [mark.x], [height], marker=_WITHOUT_ANSWER.get(mark.status, "+"), color=look["color"], markersize=9.0,
                 markeredgewidth=2.2, linestyle="none", transform=axes.get_xaxis_transform(), zorder=4,
             )  # fmt: skip
 
 
-def _scale(axes: Axes, panel: StopsPanel) -> None:
-    """A logarithmic axis where distances differ a lot: on it, a ratio has the same length everywhere."""
-    found = [mark.value for marks in panel.curves.values() for mark in marks if mark.value is not None]
+def _scale(axes: Axes, panels: Sequence[StopsPanel], limit: float | None) -> None:
+    """One scale for `panels`, logarithmic where distances differ a lot: on it, a ratio has the same length everywhere.
+
+    A share has a `limit`, which is drawn, and a linear scale from zero.
+    """
+    marks = [mark for panel in panels for curve in panel.curves.values() for mark in curve]
+    found = [mark.value for mark in marks if mark.value is not None]
+    if limit is not None:
+        axes.axhline(limit, color=INK, linewidth=1.2, linestyle=_LIMIT, zorder=1)
+        axes.set_ylim(min([0.0, *found]), 1.12 * max([limit, *found]))
+        return
     if not found:
-        axes.text(0.5, 0.5, "no stop has an answer", transform=axes.transAxes, ha="center", color=MUTED)
+        words = "no stop has such a value" if any(one.status is Status.STOPPED for one in marks) else ""
+        axes.text(0.5, 0.5, words or "no stop has an answer", transform=axes.transAxes, ha="center", color=MUTED)
         axes.set_yticks([])
         return
     low, high = min(found), max(found)
@@ -228,7 +240,12 @@ def _legend(page: Page, looks: dict[str, dict[str, Any]]) -> list[Line2D]:
         handles.append(_key(words, linestyle=OUTSIDE, **look))
     for status in sorted({mark.status for mark in marks if mark.value is None}):
         look = {"marker": _WITHOUT_ANSWER.get(status, "+"), "markersize": 9.0, "markeredgewidth": 2.2}
-        handles.append(_key(str(status), linestyle="none", **look))
+        words = "none occurs" if status is Status.STOPPED else str(status)
+        handles.append(_key(words, linestyle="none", **look))
+    if page.shown.limit is not None:
+        handles.append(_key(f"usual limit: {page.shown.limit:g} {page.shown.unit}", linestyle=_LIMIT, linewidth=1.2))
+    if not page.best:
+        return handles
     ring = {"marker": "o", "markerfacecolor": "none", "markersize": 13.0, "markeredgewidth": 1.6}
     return [*handles, _key(page.best, linestyle="none", **ring)]
 

@@ -2,11 +2,13 @@
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from slosh_cli.errors import UsageError
+from slosh_cli.report.study_answers import DISTANCE, NAMES, Answered, asked_for, usual
 from slosh_cli.results.result import Status
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.schema_run import ADHESIONS
@@ -21,8 +23,7 @@ _T = TypeVar("_T")
 _NAMES: Final[Mapping[str, str]] = {SPEED: "initial speed", TORQUE: "brake torque per wheel", LIQUID: "load"}
 _UNITS: Final[Mapping[str, str]] = {SPEED: "km/h", TORQUE: "kN m"}
 _COLUMNS: Final[Mapping[str, str]] = {SPEED: "v0_km_h", TORQUE: "torque_kN_m", LIQUID: "liquid"}
-_DISTANCE, _FORCES = "braking_distance", "coupler_forces"
-_FIGURE: Final = re.compile(rf"(?P<shown>{_DISTANCE}|{_FORCES})(?:_(?P<number>[0-9]+))?\.(?P<kind>png|svg)")
+_FIGURE: Final = re.compile(rf"(?P<shown>{'|'.join(NAMES)})(?:_(?P<number>[0-9]+))?\.(?P<kind>png|svg)")
 _MOST_PANELS: Final = 6
 
 
@@ -52,7 +53,7 @@ class Page:
     figure shows.
     """
 
-    shown: "Answered"
+    shown: Answered
     conditions: str
     label: str
     unit: str
@@ -62,37 +63,19 @@ class Page:
 
 
 @dataclass(frozen=True)
-class Answered:
-    """What a figure shows: its `title`, the `name` of its files, the `label` and `unit` of its vertical axis, and the
-    `curves` to which a row of the table adds a value each."""
+class View:
+    """What is shown of a study: answers, and the keys along the axis, of the curves and of the panels; "" as fits."""
 
-    title: str
-    name: str
-    label: str
-    unit: str
-    curves: Callable[[Mapping[str, Any]], Iterable[tuple[str, float | None]]]
+    show: tuple[str, ...] = ()
+    x: str = ""
+    curves: str = ""
+    panels: str = ""
 
 
-def _kilonewtons(value: float | None) -> float | None:
-    return None if value is None else value / 1e3
-
-
-_OF_A_WAGON: Final = (
-    Answered(
-        "Braking distance", _DISTANCE, "braking distance / m", "m",
-        lambda row: [(str(row["liquid"]), row.get("braking_distance_m"))],
-    ),
-)  # fmt: skip
-_OF_A_TRAIN: Final = (
-    Answered(
-        "Braking distance", _DISTANCE, "braking distance / m", "m",
-        lambda row: [("first vehicle", row.get("braking_distance_m"))],
-    ),
-    Answered(
-        "Coupler forces", _FORCES, "largest coupler force / kN", "kN",
-        lambda row: [(way, _kilonewtons(row.get(f"max_{way}_N"))) for way in ("compression", "tension")],
-    ),
-)  # fmt: skip
+_AS_FITS: Final = View()
+MOST_CURVES: Final = 4
+"""Curves of a panel that differ in grey, too."""
+_SHORT_KEYS: Final[Mapping[str, str]] = {SPEED: "v0", TORQUE: "torque", LIQUID: "liquid"}
 
 
 def named(pages: Sequence["Page"]) -> dict[str, "Page"]:
@@ -133,24 +116,23 @@ def value_text(axis: Axis, row: Mapping[str, Any]) -> str:
     return f"{value:g} {unit_of(axis)}".rstrip() if isinstance(value, float) else str(value)
 
 
-def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
-    """The figures of a study; none where nothing but the load varies."""
-    varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
-    if not varied:
+def pages(study: Study, rows: Iterable[Mapping[str, Any]], view: View = _AS_FITS) -> list[Page]:
+    """The figures of a study; none where nothing but the load varies. Raises UsageError for a view it cannot have."""
+    roles = _roles(study, view)
+    if roles is None:
         return []
-    along = next((axis for key in (TORQUE, SPEED) for axis in varied if axis.key == key), varied[-1])
-    others = sorted((axis for axis in varied if axis is not along), key=lambda axis: axis.key != SPEED)
-    beside, apart = (others[0] if others else None), others[1:]
-    each = _OF_A_TRAIN if isinstance(study.base, TrainScenario) else _OF_A_WAGON
+    along, told, beside, apart = roles
+    each = asked_for(study, view.show) or usual(study)
     found: dict[Answered, dict[str, dict[str, StopsPanel]]] = {shown: {} for shown in each}
     ticks: dict[Any, int] = {}
     for row in rows:
         page = ", ".join(f"{name_of(axis)} {value_text(axis, row)}" for axis in apart)
-        title = _panel_title(beside, row)
+        title = _panel_title(beside, row) if beside or SPEED not in (along.key, told.key if told else "") else ""
+        kind = f"{value_text(told, row)}, " if told else ""
         for shown, drawn in found.items():
             panel = drawn.setdefault(page, {}).setdefault(title, StopsPanel(title))
             for curve, value in shown.curves(row):
-                panel.curves.setdefault(curve, []).append(_mark(along, row, value, ticks))
+                panel.curves.setdefault(kind + curve, []).append(_mark(along, row, value, ticks))
     unit = unit_of(along)
     label = f"{name_of(along)} / {unit}" if unit else name_of(along)
     return [
@@ -161,6 +143,43 @@ def pages(study: Study, rows: Iterable[Mapping[str, Any]]) -> list[Page]:
     ]
 
 
+def _roles(study: Study, view: View) -> tuple[Axis, Axis | None, Axis | None, list[Axis]] | None:
+    """The axes along the bottom, of the curves beside the load, of the panels, and those that make figures."""
+    varied = [axis for axis in study.axes if len(axis.values) > 1 and axis.key != LIQUID]
+    chosen = {option: _chosen(varied, option, key) for option, key in vars(view).items() if option != "show" and key}
+    if len({axis.key for axis in chosen.values()}) < len(chosen):
+        raise UsageError("one key cannot be shown in two ways; name it with one of --x, --curves, --panels")
+    if not varied:
+        return None
+    free = [axis for axis in varied if axis not in chosen.values()]
+    along = chosen.get("x") or next((axis for key in (TORQUE, SPEED) for axis in free if axis.key == key), None)
+    along = along or next((axis for axis in reversed(free) if _is_number(axis)), free[-1] if free else None)
+    if along is None:
+        raise UsageError("nothing is left for the horizontal axis; leave --curves or --panels out, or vary one more")
+    others = sorted((axis for axis in free if axis is not along), key=lambda axis: axis.key != SPEED)
+    told, beside = chosen.get("curves"), chosen.get("panels")
+    loads = next((len(axis.values) for axis in study.axes if axis.key == LIQUID), 1)
+    if told and len(told.values) * loads > MOST_CURVES:
+        few = f"{len(told.values) * loads} curves in a panel, of which {MOST_CURVES} can be told apart"
+        raise UsageError(f"--curves {told.key} would make {few}; give fewer values, or one --liquid", "--curves")
+    beside = beside or (others.pop(0) if others else None)
+    return along, told, beside, others
+
+
+def _chosen(varied: Sequence[Axis], option: str, key: str) -> Axis:
+    """The axis that a person names: by its key, or the end of it."""
+    alike = [axis for axis in varied if key in (axis.key, axis.key.rpartition(".")[2], _SHORT_KEYS.get(axis.key))]
+    if len(alike) != 1:
+        raise UsageError(
+            f"`{key}` is no key that varies; those are {', '.join(axis.key for axis in varied)}", f"--{option}"
+        )
+    return alike[0]
+
+
+def _is_number(axis: Axis) -> bool:
+    return all(isinstance(axis.plain(place), float) for place in range(len(axis.values)))
+
+
 def _in_order(panel: StopsPanel) -> StopsPanel:
     for marks in panel.curves.values():
         marks.sort(key=lambda mark: mark.x)
@@ -168,8 +187,12 @@ def _in_order(panel: StopsPanel) -> StopsPanel:
 
 
 def _best(along: Axis, shown: Answered) -> str:
-    """What the lowest point of a curve is called."""
-    return "most effective torque" if along.key == TORQUE else "shortest" if shown.name == _DISTANCE else "least"
+    """What the lowest point of a curve is called; nothing where it is no matter."""
+    if shown.asked and not shown.name.startswith(DISTANCE):
+        return ""
+    return (
+        "most effective torque" if along.key == TORQUE else "shortest" if shown.name.startswith(DISTANCE) else "least"
+    )
 
 
 def _shared_out(panels: Sequence[_T], most: int) -> Iterator[Sequence[_T]]:

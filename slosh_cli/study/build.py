@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from slosh_cli.errors import UsageError, ValueRefused
-from slosh_cli.scenario import Braking, Scenario, find_packaged, load_scenario, scenario_to_yaml
+from slosh_cli.scenario import Braking, Scenario, find_packaged, load_scenario, parse_quantity, scenario_to_yaml
 from slosh_cli.scenario.train_file import TrainScenario, is_train_file, load_train
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.axis import Axis, axis_values, expanded, measured
@@ -21,6 +21,9 @@ _PAPER_STUDY: Final = "paper-wagon"
 """Name of a study without a scenario."""
 _SPEEDS: Final = "80,160"
 _TORQUES: Final = "2.5:30:2.5"
+_AROUND_SPEED: Final = (0.75, 1.0, 1.25)
+_AROUND_TORQUE: Final = (0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
+"""Parts of a scenario's own speed and torque that a study of it has where no ranges are asked for."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +45,9 @@ class Wishes:
 def build(wishes: Wishes) -> Study:
     """The study that is asked for.
 
-    Without speeds, torques and anything else to vary it is the grid of the paper's Figure 3; speeds without torques,
-    or torques without speeds, bring the other's range of that grid along. What is not varied is the scenario's own.
+    Without a scenario, speeds, torques and anything else to vary it is the grid of the paper's Figure 3; a scenario
+    brings a few values around its own speed and torque instead. Speeds without torques, or torques without speeds,
+    bring the other's range along. What is not varied is the scenario's own.
     Raises ScenarioError and UsageError for what is wrong with it, as far as that shows without running anything.
     """
     file, name, base, axes = _source(wishes.file, wishes.overrides)
@@ -71,7 +75,7 @@ def _completed(wishes: Wishes, file: str, name: str, base: Scenario | TrainScena
     if isinstance(base, TrainScenario):
         asked = _train_axes(wishes, file, axes)
         return TrainStudy(name, base, asked, file, wishes.histories, _kept(wishes.overrides, asked))
-    axes = _with_axes(axes, _braking_axes(wishes, base, axes))
+    axes = _with_axes(axes, _braking_axes(wishes, base, axes, own=file != _PAPER_STUDY))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
     return WagonStudy(name, base, axes, file, wishes.histories)
 
@@ -134,8 +138,17 @@ def _loaded(source: str | Path, overrides: Sequence[str]) -> Scenario | TrainSce
     return load_scenario(source, overrides)
 
 
-def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis]) -> list[Axis]:
-    """Speeds and torques: those asked for; those of Figure 3 where they complete it.
+def _around(value: float, unit: str, parts: Sequence[float]) -> str | None:
+    """``parts`` of an SI value as a list in `unit`, itself to the last digit; None where all of them were zero."""
+    per, si, dimension = {"km/h": (1 / 3.6, "m/s", "speed"), "kN m": (1e3, "N m", "torque")}[unit]
+    texts = [f"{part * value / per:.6g} {unit}" for part in parts]
+    own = f"{value / per:.12g} {unit}"
+    texts[parts.index(1.0)] = own if parse_quantity(own, dimension) == value else f"{value!r} {si}"
+    return ",".join(texts) if value else None
+
+
+def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis], *, own: bool) -> list[Axis]:
+    """Speeds and torques: those asked for, completed by a few around the base's `own`, or by those of Figure 3.
 
     A brake that is told by anything but its torque, in the scenario or by an axis, stays what it is.
     """
@@ -144,9 +157,11 @@ def _braking_axes(wishes: Wishes, base: Scenario, axes: Sequence[Axis]) -> list[
     others = base.braking.torque is None or any(".".join(key.split(".")[:2]) in rivals for key in varied)
     _check_asked_once(wishes)
     figure = (wishes.speeds, wishes.torques) != (None, None) or not axes
-    speeds = _SPEEDS if wishes.speeds is None and figure and SPEED not in varied else wishes.speeds
-    completes = wishes.torques is None and figure and TORQUE not in varied and not others
-    torques = _TORQUES if completes else wishes.torques
+    speeds, torques = wishes.speeds, wishes.torques
+    if speeds is None and figure and SPEED not in varied:
+        speeds = _around(base.braking.initial_speed, "km/h", _AROUND_SPEED) if own else _SPEEDS
+    if torques is None and figure and TORQUE not in varied and not others:
+        torques = _around(base.braking.torque or 0.0, "kN m", _AROUND_TORQUE) if own else _TORQUES
     found = []
     if speeds is not None:
         found.append(_axis(SPEED, speeds, "--v0", "km/h"))

@@ -21,13 +21,21 @@ def axes(study: Study) -> dict[str, tuple[str, ...]]:
 
 TORQUES = tuple(f"{2.5 * k:g} kN m" for k in range(1, 13))
 FIGURE = {SPEED: ("80 km/h", "160 km/h"), TORQUE: TORQUES, LIQUID: ("modal", "rigid")}
+OWN = {
+    SPEED: ("60 km/h", "80 km/h", "100 km/h"),
+    TORQUE: ("2.5 kN m", "3.75 kN m", "5 kN m", "6.25 kN m", "7.5 kN m", "10 kN m"),
+    LIQUID: ("modal", "rigid"),
+}
+"""What surrounds the speed and the torque of the paper's scenario."""
 
 
 @pytest.mark.parametrize(
     ("wishes", "expected"),
     [
         ({}, FIGURE),
-        ({"file": PAPER}, FIGURE),
+        ({"file": PAPER}, OWN),
+        ({"file": PAPER, "speeds": "80"}, OWN | {SPEED: ("80 km/h",)}),
+        ({"file": PAPER, "torques": "10"}, OWN | {TORQUE: ("10 kN m",)}),
         ({"speeds": "80"}, FIGURE | {SPEED: ("80 km/h",)}),
         ({"torques": "10"}, FIGURE | {TORQUE: ("10 kN m",)}),
         ({"vary": ["tank.fill=0.3,0.5"]}, {"tank.fill": ("0.3", "0.5"), LIQUID: ("modal", "rigid")}),
@@ -40,6 +48,12 @@ FIGURE = {SPEED: ("80 km/h", "160 km/h"), TORQUE: TORQUES, LIQUID: ("modal", "ri
 )
 def test_the_grid_follows_from_what_is_asked_for(wishes: dict[str, Any], expected: dict[str, Any]) -> None:
     assert axes(build(Wishes(**wishes))) == expected
+
+
+@pytest.mark.parametrize("speed", ["83.3 km/h", "22.123456789012345 m/s", "0.3 m/s", "97.7 km/h"])
+def test_a_scenarios_own_speed_stays_itself_to_the_last_digit(speed: str) -> None:
+    own = build(Wishes(file=PAPER, overrides=[f"braking.initial_speed={speed}"]))
+    assert own.base.braking.initial_speed in {own.stop(k).scenario.braking.initial_speed for k in range(own.size)}
 
 
 def test_without_a_scenario_the_study_is_about_the_papers_wagon(paper: Scenario) -> None:

@@ -13,8 +13,9 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from slosh_cli.report import figures
+from slosh_cli.report.study_answers import Answered
 from slosh_cli.report.study_figures import OUTSIDE, draw_study, study_figure
-from slosh_cli.report.study_pages import Answered, Mark, Page, StopsPanel, pages
+from slosh_cli.report.study_pages import Mark, Page, StopsPanel, pages
 from slosh_cli.results.result import Status
 from slosh_cli.study.build import Wishes, build
 
