@@ -2,8 +2,9 @@
 
 Coordinates: the position along the track; heave and pitch of the car, then of each bogie from the front; the heave of
 each wheel, then the spin of each wheel. Where a bogie has no springs under the car, its heave counts from the pivot's
-and stays zero: nothing acts on it, and it acts on nothing (theory section 2). Translations in m, rotations in rad; heave
-is positive up, pitch positive nose-down, spin positive rolling forward. Wheel 1 is the leading wheel of the front bogie.
+and stays zero: nothing acts on it, and it acts on nothing (theory section 2). Translations in m, rotations in rad;
+heave is positive up, pitch positive nose-down, spin positive rolling forward. Wheel 1 is the leading wheel of the
+front bogie.
 """
 
 from __future__ import annotations
