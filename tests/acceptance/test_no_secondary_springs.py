@@ -6,6 +6,9 @@ import second_wagon
 from second_wagon import BOGIES, Brake, SecondWagon
 from test_second_wagon import RIGID, deviations
 
+from slosh_cli.errors import SloshError
+from slosh_cli.results.wagon_range import braked_wheel_loads
+
 NONE = "wagon.secondary_suspension=none"
 
 
@@ -79,3 +82,19 @@ def test_bogies_rise_and_sink_with_their_pivots(stop):
 def test_the_ledger_closes_and_the_weight_is_carried(stop, liquid):
     run = stop("paper_80", "tank.coefficients=computed", f"tank.liquid.model={liquid}", NONE)
     assert abs(run.energy_residual) < 1e-4
+
+
+def test_braked_wheel_loads_are_those_of_springs_that_hardly_give(shipped):
+    exact = braked_wheel_loads(shipped("paper_80_solid", NONE))
+    gaps = [
+        np.abs(braked_wheel_loads(shipped("paper_80_solid", f"wagon.secondary_suspension.stiffness={k} N/m")) - exact)
+        for k in (1e8, 1e9)
+    ]
+    assert gaps[0].max() / gaps[1].max() == pytest.approx(10.0, rel=0.02)
+
+
+def test_no_springs_is_written_and_read_as_a_word(shipped):
+    assert shipped("paper_80", NONE).model_dump()["wagon"]["secondary_suspension"] == "none"
+    for given in ("non", "3", "null"):
+        with pytest.raises(SloshError, match="must be `none` or a mapping of stiffness and damping"):
+            shipped("paper_80", f"wagon.secondary_suspension={given}")
