@@ -58,7 +58,7 @@ def channels_of(scenario: Scenario, vehicle: Vehicle, rows: Matrix) -> dict[str,
         "car_pitch": place[:, CAR_PITCH],
     }
     for bogie in range(wagon.bogies):
-        channels[f"bogie_{bogie + 1}_heave"] = place[:, FIRST_BOGIE + 2 * bogie]
+        channels[f"bogie_{bogie + 1}_heave"] = place @ wagon.bogie_rows[bogie]
         channels[f"bogie_{bogie + 1}_pitch"] = place[:, FIRST_BOGIE + 2 * bogie + 1]
     train_speed = np.maximum(np.abs(speed[:, POSITION]), CREEPAGE_SPEED_FLOOR)
     for i in WHEELS:

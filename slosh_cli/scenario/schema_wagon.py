@@ -2,14 +2,17 @@
 
 import math
 from collections.abc import Collection, Iterator
-from typing import Annotated, ClassVar, Final
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
+from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Alias, Aliased, Part
-from slosh_cli.scenario.leaves import Count, Quantity, Range
+from slosh_cli.scenario.leaves import Count, Judge, Quantity, Range
 from slosh_cli.scenario.rules import Finding, Values
-from slosh_cli.scenario.units import at_most, shown
+from slosh_cli.scenario.units import at_most, plain, shown
+from slosh_cli.scenario.words import Choice
 
 _Stiffness = Annotated[float, Quantity("stiffness", Range(1e4, 1e12), "2.6e6 N/m")]
 _Damping = Annotated[float, Quantity("damping", Range(0.0, 1e10), "1.5e4 N s/m")]
@@ -72,6 +75,29 @@ class Suspension(Part):
     damping: _Damping = Field(description="Vertical viscous damping of one unit, N s/m.")
 
 
+@dataclass(frozen=True)
+class _SpringsOrNone(Judge):
+    def parse(self, value: object) -> Any:
+        if value == "none" or isinstance(value, dict | Suspension):
+            return value
+        fix = "write `none`, or something such as `{stiffness: 6 MN/m, damping: 65 kN s/m}`"
+        if isinstance(value, str):
+            refused = Choice(("none",)).refusal(value)
+            fix = refused.fix if Choice(("none",)).guess(value) else fix
+        raise ValueRefused("must be `none` or a mapping of stiffness and damping", plain(value), fix)
+
+
+def _suspension_kind(value: Any) -> str:
+    return "none" if isinstance(value, str) else "springs"
+
+
+_SecondarySuspension: TypeAlias = Annotated[
+    Annotated[Suspension, Tag("springs")] | Annotated[Literal["none"], Tag("none")],
+    Discriminator(_suspension_kind),
+    _SpringsOrNone(),
+]
+
+
 class RunningResistance(Part):
     """Running resistance of the whole wagon, constant + linear V + quadratic V^2."""
 
@@ -130,8 +156,9 @@ class Wagon(Part):
         description="Height above the rail head at which bogies and car body pull each other along, m."
     )
     primary_suspension: Suspension = Field(description="Between wheelset and bogie frame: one unit per wheel.")
-    secondary_suspension: Suspension = Field(
-        description="Between bogie frame and car body: one unit per bogie and side of the wagon."
+    secondary_suspension: _SecondarySuspension = Field(
+        description="Between bogie frame and car body: one unit per bogie and side of the wagon; `none` for bogies "
+        "such as the Y25, whose pivots carry the car without springs."
     )
     running_resistance: RunningResistance = Field(description="Running resistance of the whole wagon.")
     wheel_flats: tuple[WheelFlat, ...] = Field(default=(), description="Flats on wheels, one per wheel at most.")

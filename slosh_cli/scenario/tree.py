@@ -137,6 +137,7 @@ class Spot:
         for key in known if part else ():
             assert part is not None
             spot, value = spot_of(part, key), value_at(data, (key,))
+            spot = spot if spot.key else spot.chosen(value) or spot
             if any(key in group and value_at(data, (other,)) for group in part.exactly_one for other in group):
                 continue
             if spot.part is not None or spot.parts:

@@ -236,6 +236,7 @@ def _scales(scenario: Scenario, wagon: WagonModel, liquid: Slosh, start: Point) 
     speeds[wagon.first_spin :] /= wagon.wheel_radius
     places = np.full(wagon.coordinates, np.inf)
     heaves, sag = wagon.heaves, np.abs(start.q)
+    sag[FIRST_BOGIE : wagon.first_wheel : 2] = np.abs(wagon.bogie_rows @ start.q)
     places[heaves] = sag[heaves]
     speeds[heaves] = np.sqrt(STANDARD_GRAVITY * places[heaves])
     arms = {CAR_HEAVE: scenario.wagon.pivot_spacing}

@@ -1,8 +1,10 @@
 """Constant matrices of half a vehicle on one rail, from the kinetic energy and the suspension units.
 
 Coordinates: the position along the track; heave and pitch of the car, then of each bogie from the front; the heave of
-each wheel, then the spin of each wheel. Translations in m, rotations in rad; heave is positive up, pitch positive
-nose-down, spin positive rolling forward. Wheel 1 is the leading wheel of the front bogie.
+each wheel, then the spin of each wheel. Where a bogie has no springs under the car, its heave counts from the pivot's
+and stays zero: nothing acts on it, and it acts on nothing (theory section 2). Translations in m, rotations in rad;
+heave is positive up, pitch positive nose-down, spin positive rolling forward. Wheel 1 is the leading wheel of the
+front bogie.
 """
 
 from __future__ import annotations
@@ -27,9 +29,10 @@ class WagonModel(Block):
     `wheels` on `bogies`: their heaves begin at place `first_wheel`, their spins at `first_spin`, and `frame` (wheels,)
     is the place of the pitch that a wheel's brake reacts on. `mass`, `damping`, `stiffness` are square; `weight` holds
     the generalised forces of gravity; `tank_row` gives the longitudinal displacement of the tank's bottom centre,
-    `car_row` that of the car body's centre, `coupling_row` that of the coupling points; `tank_push` and `tank_turn` are
-    the accelerations per newton along x at the tank's bottom centre and per newton metre in the car's pitch;
-    `gravity_stiffness` (N m/rad, negative) is the frozen load's share of `stiffness` at car pitch.
+    `car_row` that of the car body's centre, `coupling_row` that of the coupling points; `bogie_rows` (bogies,
+    coordinates) give the bogies' heaves; `tank_push` and `tank_turn` are the accelerations per newton along x at the
+    tank's bottom centre and per newton metre in the car's pitch; `gravity_stiffness` (N m/rad, negative) is the frozen
+    load's share of `stiffness` at car pitch.
     """
 
     wheels: int
@@ -45,6 +48,7 @@ class WagonModel(Block):
     tank_row: Vector
     car_row: Vector
     coupling_row: Vector
+    bogie_rows: Matrix
     tank_push: Vector
     tank_turn: Vector
     gravity_stiffness: float
@@ -83,6 +87,14 @@ def _pivots(wagon: Wagon) -> tuple[float, float]:
     return 0.5 * wagon.pivot_spacing, -0.5 * wagon.pivot_spacing
 
 
+def _bogie_rows(wagon: Wagon) -> Matrix:
+    """Rows of the heaves of the bogies: their own, or the car's above their pivots, (bogies, coordinates)."""
+    own = np.array([_unit(heave) for heave in range(FIRST_BOGIE, _FIRST_WHEEL, 2)])
+    if wagon.secondary_suspension != "none":
+        return own
+    return np.array([_unit(CAR_HEAVE) - pivot * _unit(CAR_PITCH) for pivot in _pivots(wagon)])
+
+
 def _arms(wagon: Wagon) -> tuple[float, float]:
     """Places (m) of a bogie's axles ahead of its pivot."""
     return 0.5 * wagon.bogie.wheelbase, -0.5 * wagon.bogie.wheelbase
@@ -105,13 +117,15 @@ def _mass_matrix(wagon: Wagon, tank_row: Vector, load: FrozenLoad, carried: bool
         (load.mass, _unit(CAR_HEAVE)),
         (load.pitch_inertia, _unit(CAR_PITCH)),
     ]
-    for heave in range(FIRST_BOGIE, _FIRST_WHEEL, 2):
-        pitch = _unit(heave + 1)
+    for bogie, heave in enumerate(_bogie_rows(wagon)):
+        pitch = _unit(FIRST_BOGIE + 2 * bogie + 1)
         terms += [
             (wagon.bogie.mass, _unit(POSITION) + (wagon.bogie.centre_height - radius) * pitch),
-            (wagon.bogie.mass, _unit(heave)),
+            (wagon.bogie.mass, heave),
             (wagon.bogie.pitch_inertia, pitch),
         ]
+        if wagon.secondary_suspension == "none":
+            terms.append((wagon.bogie.mass, _unit(FIRST_BOGIE + 2 * bogie)))  # a rest of its own: nothing moves it
     for wheel in range(_BOGIES * _AXLES):
         terms += [
             (wagon.wheelset.mass, _unit(POSITION)),
@@ -126,9 +140,13 @@ def _suspension_matrices(wagon: Wagon) -> tuple[Matrix, Matrix]:
     stiffness = np.zeros((_COORDINATES, _COORDINATES))
     damping = np.zeros_like(stiffness)
     units = []
-    for bogie, pivot in enumerate(_pivots(wagon)):
-        heave, pitch = _unit(FIRST_BOGIE + 2 * bogie), _unit(FIRST_BOGIE + 2 * bogie + 1)
-        units.append((wagon.secondary_suspension, _unit(CAR_HEAVE) - pivot * _unit(CAR_PITCH) - heave))
+    sprung = wagon.secondary_suspension != "none"
+    secondary = wagon.secondary_suspension if wagon.secondary_suspension != "none" else wagon.primary_suspension
+    for bogie, (pivot, heave) in enumerate(zip(_pivots(wagon), _bogie_rows(wagon), strict=True)):
+        own, pitch = _unit(FIRST_BOGIE + 2 * bogie), _unit(FIRST_BOGIE + 2 * bogie + 1)
+        over = _unit(CAR_HEAVE) - pivot * _unit(CAR_PITCH) - heave
+        # without springs nothing is left `over` the pivot; any unit then holds the coordinate that nothing moves
+        units.append((secondary, over if sprung else own))
         for axle, arm in enumerate(_arms(wagon)):
             wheel = _unit(_FIRST_WHEEL + _AXLES * bogie + axle)
             units.append((wagon.primary_suspension, heave - arm * pitch - wheel))
@@ -140,11 +158,11 @@ def _suspension_matrices(wagon: Wagon) -> tuple[Matrix, Matrix]:
 
 def _weight(wagon: Wagon, load: FrozenLoad) -> Vector:
     """Generalised forces (N) of gravity on half the wagon."""
-    masses = np.zeros(_COORDINATES)
-    masses[CAR_HEAVE] = wagon.car_body.mass + load.mass
-    masses[FIRST_BOGIE:_FIRST_WHEEL:2] = wagon.bogie.mass
+    masses = wagon.bogie.mass * _bogie_rows(wagon).sum(axis=0)
+    masses[CAR_HEAVE] += wagon.car_body.mass + load.mass
     masses[_FIRST_WHEEL:_FIRST_SPIN] = wagon.wheelset.mass
-    return -0.5 * STANDARD_GRAVITY * masses
+    weight: Vector = -0.5 * STANDARD_GRAVITY * masses
+    return weight
 
 
 def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, carried: bool = True) -> WagonModel:
@@ -172,6 +190,7 @@ def wagon_model(wagon: Wagon, tank_bottom_height: float, load: FrozenLoad, *, ca
         tank_row=tank_row,
         car_row=_car_at_height(wagon, wagon.car_body.centre_height),
         coupling_row=_car_at_height(wagon, wagon.coupling_height),
+        bogie_rows=_bogie_rows(wagon),
         tank_push=np.asarray(np.linalg.solve(mass, tank_row), dtype=np.float64),
         tank_turn=np.asarray(np.linalg.solve(mass, _unit(CAR_PITCH)), dtype=np.float64),
         gravity_stiffness=gravity_stiffness,

@@ -100,6 +100,8 @@ def _refuse_what_is_left_out(scenario: Scenario) -> None:
     track = scenario.track
     if any(gradient for _, gradient in track.gradient_points) or track.unevenness or scenario.wagon.wheel_flats:
         raise ValueError("the line must be level, rails and wheels even: the second code knows no others")
+    if scenario.wagon.secondary_suspension == "none":
+        raise ValueError("the bogies must have a secondary suspension: the second code knows no others")
 
 
 def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[float, float, float]:
@@ -110,4 +112,5 @@ def settled(scenario: Scenario, bodies: Bodies, contact: WheelContact) -> tuple[
     load = on_primary + STANDARD_GRAVITY * wagon.wheelset.mass / 2
     wheel = -((load / contact.stiffness) ** (2 / 3))
     bogie = wheel - on_primary / wagon.primary_suspension.stiffness
-    return bogie - on_secondary / wagon.secondary_suspension.stiffness, bogie, wheel
+    secondary = wagon.secondary_suspension
+    return bogie - (0.0 if secondary == "none" else on_secondary / secondary.stiffness), bogie, wheel

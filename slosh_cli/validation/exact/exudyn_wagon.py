@@ -56,6 +56,7 @@ def _build(system: Any, scenario: Scenario, mode: SloshMode, linear: bool) -> di
         build.tie(its, [1, 0, wagon.bogie.centre_height - pivot], yoke, [1.0 - k, float(k)])
         axle_lines.append((its, low))
         unit = wagon.secondary_suspension
+        assert unit != "none"  # refused before
         build.spring(
             [build.point(bogie, 0, 0), build.point(car, place, -bodies.attachment)],
             unit.stiffness,
