@@ -19,6 +19,7 @@ from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, SteadyFile, replacing
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
+from slosh_cli.results.surface import SurfaceProfile, surface_profile
 from slosh_cli.results.train_result import StoredPart, TrainHistory, TrainResult
 from slosh_cli.scenario.loader import Root
 from slosh_cli.version import __version__
@@ -31,6 +32,7 @@ _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
 _VEHICLE: Final = "vehicle_"
 _COUPLING: Final = "coupling_"
+_SURFACE: Final = "surface_profile"
 
 
 class _Group(NamedTuple):
@@ -47,7 +49,8 @@ def write_history(result: Result, path: Path) -> None:
     ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
     attributes = {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
-    _write(path, result.scenario, result.time, channels, attributes)
+    profile = surface_profile(result.scenario, result.time, result.channels)
+    _write(path, result.scenario, result.time, channels, attributes, profile=profile)
 
 
 def write_train(result: TrainResult, path: Path) -> None:
@@ -120,6 +123,7 @@ def _write(
     channels: Mapping[Channel, Vector],
     attributes: Mapping[str, Any],
     groups: "Mapping[str, _Group] | None" = None,
+    profile: SurfaceProfile | None = None,
 ) -> None:
     """Write the file; it replaces the one at `path` when all of it is on the disk.
 
@@ -138,6 +142,8 @@ def _write(
                     _write_channel(part, info, values).dims[0].attach_scale(axis)
                 for key, value in group.attributes.items():
                     part.attrs[key] = value
+            if profile is not None:
+                _write_profile(file, profile)
             file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
             for key, value in attributes.items():
                 file.attrs[key] = value
@@ -219,6 +225,33 @@ def _write_channel(file: h5py.Group, info: Channel, values: Vector) -> h5py.Data
     dataset.attrs["units"] = info.unit
     dataset.attrs["long_name"] = info.long_name
     return dataset
+
+
+def _write_profile(file: h5py.File, profile: SurfaceProfile) -> None:
+    """The surface along the tank, (times, places), with both its coordinates."""
+    scales = [
+        _write_channel(file, Channel(f"{_SURFACE}_time", "s", "instants of the surface along the tank"), profile.time),
+        _write_channel(file, Channel(f"{_SURFACE}_place", "m", "distance from the front end wall"), profile.place),
+    ]
+    rise = file.create_dataset(_SURFACE, data=profile.rise, dtype="<f4", compression="gzip", shuffle=True)
+    rise.attrs.update({"units": "m", "long_name": "rise of the free surface", "standing": profile.standing})
+    for axis, scale in enumerate(scales):
+        scale.make_scale(scale.name.removeprefix("/"))
+        rise.dims[axis].attach_scale(scale)
+
+
+def read_surface(path: Path) -> SurfaceProfile | None:
+    """The surface along the tank that `write_history` kept; None in a file without it. Raises FileError."""
+    with _unreadable(path), h5py.File(path, "r") as file:
+        if _SURFACE not in file:
+            return None
+        time, place, rise = (
+            np.asarray(file[name][:], dtype=np.float64) for name in (f"{_SURFACE}_time", f"{_SURFACE}_place", _SURFACE)
+        )
+        standing = str(file[_SURFACE].attrs["standing"])
+    sound = rise.shape == (time.size, place.size) and all(np.isfinite(one).all() for one in (time, place, rise))
+    _refuse(path, [] if sound and time.size else [f"its {_SURFACE} must be finite and as long as its coordinates"])
+    return SurfaceProfile(time, place, rise, standing)
 
 
 def _circumstances() -> dict[str, Any]:
