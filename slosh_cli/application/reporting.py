@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from slosh_cli.report.html import page_table, page_text, plain_numbers
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.files import FileError, write_text
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario
 
 _MOST_ROWS: Final = 1000
-_MOST_STOPS: Final = 2000
 _CHARTS: Final = (
     ("Speed, km/h", 3.6, ("speed",)),
     ("Normal force of each wheel, kN", 1e-3, tuple(wheel(i, "normal_force") for i in WHEELS)),
@@ -29,14 +28,8 @@ _CHARTS: Final = (
     ("Rise of the surface at the end walls, m", 1.0, ("surface_front", "surface_rear")),
     ("Force of the liquid on the tank, kN", 1e-3, ("liquid_force",)),
 )
-_WORST: Final = (
-    ("longest braking distance", "braking_distance_m", "m"),
-    ("largest wheel unloading", "max_wheel_unloading", "1"),
-    ("largest rise of the surface", "max_surface_m", "m"),
-    ("largest compression in the train", "max_compression_N", "N"),
-    ("largest tension in the train", "max_tension_N", "N"),
-)
 _PROVENANCE: Final = ("program", "program_version", "created", "python_version", "numpy_version", "numba_version")
+_IN_WORDS: Final = ("warnings", "reason", "name")
 _LOCKED_SPEED: Final = 1e-3
 
 
@@ -45,19 +38,19 @@ def report(source: str | Path, target: str | Path | None = None) -> Path:
 
     It appears whole or not at all. Raises FileError for a source that cannot be read or is something else.
     """
+    from slosh_cli.application.study_report import study_page
     from slosh_cli.results.hdf5 import is_train_history
 
     path = Path(source)
     file = Path(target) if target is not None else (path if path.is_dir() else path.parent) / "report.html"
     if file.absolute() == path.absolute():
         raise FileError(f"the report must not replace its own source {path}", where=str(path))
-    text = _study_page(path) if path.is_dir() else _train_page(path) if is_train_history(path) else _run_page(path)
+    text = study_page(path) if path.is_dir() else _train_page(path) if is_train_history(path) else _run_page(path)
     write_text(text, file)
     return file
 
 
 def _run_page(path: Path) -> str:
-    from slosh_cli.report.html import page_text
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     history, profile = read_history(path), read_surface(path)
@@ -111,7 +104,6 @@ def _scenario(history: History) -> Scenario:
 
 
 def _run_data(history: History, scenario: Scenario, profile: SurfaceProfile | None, rows: Integers) -> dict[str, Any]:
-    from slosh_cli.report.html import plain_numbers
     from slosh_cli.section import liquid_depth, section_of
 
     tank, wagon, held = scenario.tank, scenario.wagon, history.channels
@@ -145,7 +137,6 @@ def _run_data(history: History, scenario: Scenario, profile: SurfaceProfile | No
 
 
 def _chart(history: History, rows: Integers, title: str, scale: float, names: Sequence[str]) -> dict[str, Any]:
-    from slosh_cli.report.html import plain_numbers
 
     def short(name: str) -> str:
         return name.split("_normal", maxsplit=1)[0].split("_speed", maxsplit=1)[0].replace("_", " ")
@@ -189,20 +180,19 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
         )
         for one in checks
     ]
-    known = [(_said(name), facts[name]) for name in _PROVENANCE if name in facts]
     return [
-        _table(
+        page_table(
             "Answers", ("answer", "value", "unit"), answers, "Computed by the model, SI units; lists are wheels 1 to 4."
         ),
-        _table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
-        _table(
+        page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
+        page_table(
             "Inputs",
             ("key", "value"),
             inputs,
             "As resolved, with units. The file keeps no word on which were defaults.",
         ),
-        _table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
-        _table("Provenance", ("", ""), known),
+        page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
+        _facts_table("Provenance", facts, _PROVENANCE),
     ]
 
 
@@ -228,71 +218,26 @@ def _words(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _table(
-    title: str, head: Sequence[str], rows: Sequence[Sequence[Any]], note: str = "", sortable: bool = False
-) -> dict[str, Any]:
-    return {"title": title, "head": head, "rows": rows, "note": note, "sortable": sortable}
+def _facts_table(title: str, facts: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
+    return page_table(title, ("name", "value"), [(name, _words(facts[name])) for name in facts if name in names])
 
 
 def _train_page(path: Path) -> str:
     from slosh_cli.application.plotting import plot
-    from slosh_cli.report.html import page_text
     from slosh_cli.results.hdf5 import read_train
 
     train = read_train(path)
-    parts = [("Vehicles", train.vehicles), ("Couplings", train.couplings)]
-    tables = []
-    for title, found in parts:
+    tables = [_facts_table("Answers", train.facts, set(train.facts) - {*_PROVENANCE, *_IN_WORDS})]
+    for title, found in (("Vehicles", train.vehicles), ("Couplings", train.couplings)):
         names = [name for name in (found[0].facts if found else {}) if name not in ("scenario", "checks")]
         rows = [(number, *(_words(one.facts.get(name)) for name in names)) for number, one in enumerate(found, 1)]
-        tables.append(_table(title, ("number", *names), rows, "From the front, SI units."))
+        tables.append(page_table(title, ("number", *names), rows, "From the front, SI units."))
+    tables.append(_facts_table("Provenance", train.facts, _PROVENANCE))
+    distance = train.facts.get("braking_distance_m", np.nan)
+    stopped = f"The first vehicle stopped after {distance:.2f} m." if np.isfinite(distance) else "No braking distance."
+    warnings = [*str(train.facts.get("warnings", "")).splitlines(), str(train.facts.get("reason", ""))]
+    facts = {"title": train.name, "verdict": stopped, "warnings": [one for one in warnings if one], "tables": tables}
     with tempfile.TemporaryDirectory() as folder:
         drawn = plot(path, folder)
         files = {name: Path(folder) / f"{name}.png" for name in drawn}
-        return page_text({"title": train.name, "tables": tables}, {}, files)
-
-
-def _study_page(folder: Path) -> str:
-    from slosh_cli.report.html import page_text
-    from slosh_cli.report.study_pages import figure_files
-    from slosh_cli.study.table import TABLE
-
-    head, rows = _study_rows(folder / TABLE, folder)
-    worst = list(_worst_cases(head, rows))
-    tables = [
-        _table("Worst cases", ("what", "value", "unit", "stop"), worst, "The stop of the study that is furthest."),
-        _table("Stops", head, rows, "A click on a column's name sorts.", sortable=True),
-    ]
-    figures = {name: folder / name for name in figure_files(folder) if name.endswith(".png")}
-    return page_text({"title": f"Study {folder.resolve().name}", "tables": tables}, {}, figures)
-
-
-def _study_rows(file: Path, folder: Path) -> tuple[list[str], list[list[str]]]:
-    """Columns and rows of a study's table."""
-    if not file.exists():
-        raise FileError(f"{folder} holds no study: it lacks {file.name}; `slosh sweep` writes one", where=str(folder))
-    try:
-        with file.open(encoding="utf-8", newline="") as opened:
-            head, *rows = csv.reader(opened)
-    except (OSError, ValueError, csv.Error) as error:
-        raise FileError(f"cannot read {file} as the table of a study: {error}", where=str(file)) from error
-    if not rows or any(len(row) != len(head) for row in rows):
-        raise FileError(f"{file} must have rows as wide as its head, but has none or others", where=str(file))
-    if len(rows) > _MOST_STOPS:
-        raise FileError(f"{file} has {len(rows)} stops; a report shows at most {_MOST_STOPS}", where=str(file))
-    if "status" not in head:
-        raise FileError(f"{file} is not the table of a study: it lacks the column status", where=str(file))
-    return head, rows
-
-
-def _worst_cases(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[tuple[str, str, str, str]]:
-    """The stops that are furthest, for each answer that the table has; no number, no worst case."""
-    first = list(head[: head.index("braking_distance_m")]) if "braking_distance_m" in head else list(head[:1])
-    for what, column, unit in _WORST:
-        numbers = (
-            [(float(row[head.index(column)]), row) for row in rows if row[head.index(column)]] if column in head else []
-        )
-        numbers = [one for one in numbers if np.isfinite(one[0])]
-        if numbers:
-            value, row = max(numbers, key=lambda one: one[0])
-            yield what, f"{value:.6g}", unit, ", ".join(f"{name} {row[k]}" for k, name in enumerate(first))
+        return page_text(facts, {}, files)

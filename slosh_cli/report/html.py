@@ -3,7 +3,7 @@
 import base64
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
@@ -36,6 +36,13 @@ def page_text(facts: Mapping[str, Any], data: Mapping[str, Any], figures: Mappin
     if len(text.encode("utf-8")) > _LARGEST:
         raise FileError("the report would be larger than 5 MB; give a smaller study")
     return text
+
+
+def page_table(
+    title: str, head: Sequence[str], rows: Sequence[Sequence[Any]], note: str = "", sortable: bool = False
+) -> dict[str, Any]:
+    """A table of a page: its rows are of cells that become text."""
+    return {"title": title, "head": head, "rows": rows, "note": note, "sortable": sortable}
 
 
 def plain_numbers(values: Iterable[Any]) -> list[float | None]:

@@ -89,7 +89,7 @@ def read_train(path: Path) -> TrainHistory:
     _refuse(path, faults_of_columns(time, columns))
     vehicles = tuple(part for name, part in sorted(parts.items()) if name.startswith(_VEHICLE))
     couplings = tuple(part for name, part in sorted(parts.items()) if name.startswith(_COUPLING))
-    return TrainHistory(str(attributes["name"]), time, vehicles, couplings)
+    return TrainHistory(str(attributes["name"]), time, vehicles, couplings, attributes)
 
 
 def is_train_history(path: Path) -> bool:
