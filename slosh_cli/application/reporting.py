@@ -50,6 +50,21 @@ def report(source: str | Path, target: str | Path | None = None) -> Path:
     return file
 
 
+def animate(source: str | Path, target: str | Path | None = None) -> Path:
+    """Write the replay of a history file as a GIF, or an MP4; returns its file, default animation.gif beside it.
+
+    It appears whole or not at all. Raises FileError for a source that is no run, and for another kind of file.
+    """
+    from slosh_cli.report.animation import write_animation
+    from slosh_cli.results.hdf5 import read_history, read_surface
+
+    path = Path(source)
+    file = Path(target) if target is not None else path.with_name("animation.gif")
+    history, profile = read_history(path), read_surface(path)
+    write_animation(history.name, _run_data(history, _scenario(history), profile, _picked(history)), file)
+    return file
+
+
 def _run_page(path: Path) -> str:
     from slosh_cli.results.hdf5 import read_history, read_surface
 

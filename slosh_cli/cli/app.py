@@ -11,7 +11,7 @@ import typer
 from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
-_COMMANDS: Final = ("init", "check", "run", "sweep", "tank", "plot", "report", "schema", "validate")
+_COMMANDS: Final = ("init", "check", "run", "sweep", "tank", "plot", "report", "animate", "schema", "validate")
 """In the order of the help."""
 
 _EPILOG: Final = (

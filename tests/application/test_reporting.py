@@ -8,8 +8,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from PIL import Image
 
-from slosh_cli.application.reporting import report
+from slosh_cli.application.reporting import animate, report
 from slosh_cli.application.stop import simulate
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_surface, write_history
@@ -112,3 +113,24 @@ def test_damaged_histories_are_refused(run_file: Path, tmp_path: Path) -> None:
     with pytest.raises(FileError, match="its own source"):
         report(run_file, run_file)
     assert not (tmp_path / "page.html").exists()
+
+
+def test_the_animation_moves(run_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("slosh_cli.report.animation._FRAMES", 12)
+    with Image.open(animate(run_file, tmp_path / "stop.gif")) as film:
+        assert film.n_frames == 12
+        pictures = []
+        for frame in (0, 4, 11):
+            film.seek(frame)
+            pictures.append(film.convert("RGB").tobytes())
+    assert len(set(pictures)) == 3
+
+
+@pytest.mark.parametrize("name", ["stop.mp4", "stop.avi"])
+def test_no_animation_without_its_writer(
+    run_file: Path, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("slosh_cli.report.animation.FFMpegWriter.isAvailable", lambda: False)
+    with pytest.raises(FileError, match=name):
+        animate(run_file, tmp_path / name)
+    assert not list(tmp_path.iterdir())
