@@ -33,7 +33,7 @@ _IN_WORDS: Final = ("warnings", "reason", "name")
 _LOCKED_SPEED: Final = 1e-3
 
 
-def report(source: str | Path, target: str | Path | None = None) -> Path:
+def write_report(source: str | Path, target: str | Path | None = None) -> Path:
     """Write the report of a history file or of a study's folder; returns its file, default report.html beside them.
 
     It appears whole or not at all. Raises FileError for a source that cannot be read or is something else.

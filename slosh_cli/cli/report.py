@@ -18,8 +18,11 @@ def report_command(
         Path | None, option("--output -o", "FILE.html", "The page. Default: report.html beside the source.")
     ] = None,
 ) -> ExitCode:
-    """One HTML page that replays a run, or tells a study; it needs no network and can be mailed."""
-    from slosh_cli.application.reporting import report
+    """One HTML page of a run, a train or a study.
 
-    say(str(report(source, output)))
+    It replays a run, needs no network and can be mailed.
+    """
+    from slosh_cli.application.reporting import write_report
+
+    say(str(write_report(source, output)))
     return ExitCode.DONE

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from slosh_cli.application.reporting import animate, report
+from slosh_cli.application.reporting import animate, write_report
 from slosh_cli.application.stop import simulate
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_surface, write_history
@@ -32,7 +32,7 @@ def data_of(page: str) -> dict:
 
 
 def test_curves_of_the_page_are_rows_of_the_file(run_file: Path) -> None:
-    found = data_of(report(run_file).read_text(encoding="utf-8"))
+    found = data_of(write_report(run_file).read_text(encoding="utf-8"))
     with h5py.File(run_file) as file:
         rows = np.searchsorted(file["time"][:], np.array(found["time"]) - 1e-4)
         for chart in found["charts"]:
@@ -44,7 +44,7 @@ def test_curves_of_the_page_are_rows_of_the_file(run_file: Path) -> None:
 
 
 def test_what_a_scenario_says_stays_text(run_file: Path) -> None:
-    page = report(run_file).read_text(encoding="utf-8")
+    page = write_report(run_file).read_text(encoding="utf-8")
     assert EVIL not in page
     assert html.escape(EVIL) in page
     assert len(re.findall(r"<script", page)) == 2
@@ -72,7 +72,7 @@ TABLE = "v0_km_h,torque_kN_m,braking_distance_m,status,max_wheel_unloading\n"
 
 def test_a_study_has_its_worst_cases(tmp_path: Path) -> None:
     (tmp_path / "braking_distance.csv").write_text(TABLE + "80,8,148.5,stopped,0.3\n80,<b>,99,stopped,0.75\n")
-    page = report(tmp_path).read_text(encoding="utf-8")
+    page = write_report(tmp_path).read_text(encoding="utf-8")
     assert "<td>148.5</td><td>m</td><td>v0_km_h 80, torque_kN_m 8</td>" in page
     assert "<td>0.75</td><td>1</td><td>v0_km_h 80, torque_kN_m &lt;b&gt;</td>" in page
     assert "Download CSV" in page
@@ -83,7 +83,7 @@ def test_a_folder_without_the_rows_of_a_study_is_refused(tmp_path: Path, table: 
     if table is not None:
         (tmp_path / "braking_distance.csv").write_text(table)
     with pytest.raises(FileError, match=r"braking_distance\.csv"):
-        report(tmp_path)
+        write_report(tmp_path)
     assert not (tmp_path / "report.html").exists()
 
 
@@ -109,9 +109,9 @@ def test_damaged_histories_are_refused(run_file: Path, tmp_path: Path) -> None:
 
     for spoil in (all_nan, no_channel, other_kind, bent_surface):
         with pytest.raises(FileError):
-            report(spoiled(spoil.__name__, spoil), tmp_path / "page.html")
+            write_report(spoiled(spoil.__name__, spoil), tmp_path / "page.html")
     with pytest.raises(FileError, match="its own source"):
-        report(run_file, run_file)
+        write_report(run_file, run_file)
     assert not (tmp_path / "page.html").exists()
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from slosh_cli.application.reporting import report
+from slosh_cli.application.reporting import write_report
 from slosh_cli.application.stop import simulate
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.scenario import load_scenario
@@ -77,7 +77,7 @@ def run_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
     evil = 'description="<script>alert(1)</script>"'
     write_history(simulate(load_scenario("paper-80-liquid", ["output.interval=0.05 s", evil])), folder / "run.h5")
-    return report(folder / "run.h5")
+    return write_report(folder / "run.h5")
 
 
 @pytest.mark.parametrize("width", [390, 1280])
@@ -97,7 +97,7 @@ def test_a_run_replays(run_page: Path, width: int) -> None:
 def test_a_table_sorts_by_number(tmp_path: Path) -> None:
     rows = "80,8,99,stopped\n80,9,148.5,stopped\n80,10,,failed\n80,11,1000,stopped\n"
     (tmp_path / "braking_distance.csv").write_text("v0_km_h,torque_kN_m,braking_distance_m,status\n" + rows)
-    found = visited(report(tmp_path), 390)
+    found = visited(write_report(tmp_path), 390)
     assert found["errors"] == []
     assert found["up"] == ["99", "148.5", "1000", ""]
     assert found["down"] == ["1000", "148.5", "99", ""]
