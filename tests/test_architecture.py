@@ -34,6 +34,7 @@ ONE_HOME = {
     "yaml": "scenario/yaml_text.py",
     "h5py": "results/hdf5.py",
     "matplotlib": "report/",
+    "jinja2": "report/html.py",
     "pint": "scenario/conversion.py",
     "sqlite3": "study/journal.py",
     "distributed": "study/cluster.py",

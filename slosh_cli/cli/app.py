@@ -12,7 +12,8 @@ from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
 _COMMANDS: Final = (
-    "init", "presets", "check", "run", "sweep", "find", "optimum", "compare", "tank", "plot", "schema", "validate",
+    "init", "presets", "check", "run", "sweep", "find", "optimum", "compare",
+    "tank", "plot", "report", "animate", "schema", "validate",
 )  # fmt: skip
 """In the order of the help."""
 

@@ -3,9 +3,10 @@
 import platform
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -19,6 +20,7 @@ from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, SteadyFile, replacing
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
+from slosh_cli.results.surface import SurfaceProfile, surface_profile
 from slosh_cli.results.train_result import StoredPart, TrainHistory, TrainResult
 from slosh_cli.scenario.loader import Root
 from slosh_cli.version import __version__
@@ -31,6 +33,7 @@ _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
 _VEHICLE: Final = "vehicle_"
 _COUPLING: Final = "coupling_"
+_SURFACE: Final = "surface_profile"
 
 
 class _Group(NamedTuple):
@@ -47,14 +50,13 @@ def write_history(result: Result, path: Path) -> None:
     ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
     attributes = {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
-    _write(path, result.scenario, result.time, channels, attributes)
+    profile = surface_profile(result.scenario, result.time, result.channels)
+    more = None if profile is None else partial(_write_profile, profile=profile)
+    _write(path, result.scenario, result.time, channels, attributes, more=more)
 
 
 def write_train(result: TrainResult, path: Path) -> None:
-    """Write the histories of a train's stop, its scenario, its answers and its circumstances to the HDF5 file `path`.
-
-    The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
-    """
+    """The same of a train's stop: histories of vehicles and couplings. Raises as `write_history` does."""
     groups: dict[str, _Group] = {}
     for number, vehicle in enumerate(result.vehicles, 1):
         facts = vehicle.as_attributes() | {"scenario": scenario_text(vehicle.scenario)}
@@ -86,7 +88,7 @@ def read_train(path: Path) -> TrainHistory:
     _refuse(path, faults_of_columns(time, columns))
     vehicles = tuple(part for name, part in sorted(parts.items()) if name.startswith(_VEHICLE))
     couplings = tuple(part for name, part in sorted(parts.items()) if name.startswith(_COUPLING))
-    return TrainHistory(str(attributes["name"]), time, vehicles, couplings)
+    return TrainHistory(str(attributes["name"]), time, vehicles, couplings, attributes)
 
 
 def is_train_history(path: Path) -> bool:
@@ -106,14 +108,14 @@ def write_excitation(
     path: Path,
     profiles: "Mapping[Channel, Array]",
 ) -> None:
-    """Write the history of a tank alone: `channels` at `time` (s), the scenario, `facts` as root attributes.
-
-    `profiles` are data with axes of their own.
-
-    The file at `path` is replaced only when the new one is whole. Raises FileError when it cannot be written.
-    """
+    """Write the history of a tank alone, whole, as `write_history`: `profiles` have axes of their own."""
     attributes = {"excitation_format_version": _FORMAT, **_circumstances(), **facts}
-    _write(path, scenario, time, channels, attributes, profiles=profiles)
+    _write(path, scenario, time, channels, attributes, more=partial(_write_tables, tables=profiles))
+
+
+def _write_tables(file: h5py.File, tables: Mapping[Channel, Array]) -> None:
+    for info, table in tables.items():
+        _write_channel(file, info, table)
 
 
 def _write(
@@ -123,7 +125,7 @@ def _write(
     channels: Mapping[Channel, Vector],
     attributes: Mapping[str, Any],
     groups: "Mapping[str, _Group] | None" = None,
-    profiles: "Mapping[Channel, Array] | None" = None,
+    more: Callable[[h5py.File], None] | None = None,
 ) -> None:
     """Write the file; it replaces the one at `path` when all of it is on the disk.
 
@@ -142,8 +144,8 @@ def _write(
                     _write_channel(part, info, values).dims[0].attach_scale(axis)
                 for key, value in group.attributes.items():
                     part.attrs[key] = value
-            for info, table in (profiles or {}).items():
-                _write_channel(file, info, table)
+            if more is not None:
+                more(file)
             file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
             for key, value in attributes.items():
                 file.attrs[key] = value
@@ -225,6 +227,31 @@ def _write_channel(file: h5py.Group, info: Channel, values: Array) -> h5py.Datas
     dataset.attrs["units"] = info.unit
     dataset.attrs["long_name"] = info.long_name
     return dataset
+
+
+def _write_profile(file: h5py.File, profile: SurfaceProfile) -> None:
+    """The surface along the tank, (times, places), with its coordinates."""
+    instants = Channel(f"{_SURFACE}_time", "s", "instants of the surface along the tank")
+    places = Channel(f"{_SURFACE}_place", "m", "distance from the front end wall")
+    scales = [_write_channel(file, instants, profile.time), _write_channel(file, places, profile.place)]
+    rise = file.create_dataset(_SURFACE, data=profile.rise, dtype="<f4", compression="gzip", shuffle=True)
+    rise.attrs.update({"units": "m", "long_name": "rise of the free surface", "standing": profile.standing})
+    for axis, scale in enumerate(scales):
+        scale.make_scale(scale.name.removeprefix("/"))
+        rise.dims[axis].attach_scale(scale)
+
+
+def read_surface(path: Path) -> SurfaceProfile | None:
+    """The surface along the tank that `write_history` kept; None in a file without it. Raises FileError."""
+    with _unreadable(path), h5py.File(path, "r") as file:
+        if _SURFACE not in file:
+            return None
+        names = (f"{_SURFACE}_time", f"{_SURFACE}_place", _SURFACE)
+        time, place, rise = (np.asarray(file[name][:], dtype=np.float64) for name in names)
+        standing = str(file[_SURFACE].attrs["standing"])
+    sound = rise.shape == (time.size, place.size) and all(np.isfinite(one).all() for one in (time, place, rise))
+    _refuse(path, [] if sound and time.size else [f"its {_SURFACE} must be finite and as long as its coordinates"])
+    return SurfaceProfile(time, place, rise, standing)
 
 
 def _circumstances() -> dict[str, Any]:

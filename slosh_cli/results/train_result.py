@@ -3,7 +3,7 @@
 # ruff: noqa: N815  (units such as N keep their case in the names that files and scripts rely on)
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -154,6 +154,7 @@ class TrainResult(Answers):
             self.time,
             tuple(StoredPart(one.as_attributes(), one.channels) for one in self.vehicles),
             tuple(StoredPart(one.as_attributes(), found) for one, found in zip(self.couplings, couplings, strict=True)),
+            self.as_attributes(),
         )
 
     def to_frame(self) -> "pd.DataFrame":
@@ -187,12 +188,13 @@ class StoredPart:
 
 @dataclass(frozen=True, eq=False)
 class TrainHistory:
-    """What figures show of a train: its name, `time` (n,) s, vehicles and couplings from the front."""
+    """What figures show of a train: its name, `time` (n,) s, vehicles and couplings from the front, `facts` by name."""
 
     name: str
     time: Vector
     vehicles: tuple[StoredPart, ...]
     couplings: tuple[StoredPart, ...]
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
 
 def _derive(record: Any) -> None:

@@ -66,7 +66,8 @@ def test_several_warnings_stay_several(result: Result, tmp_path: Path) -> None:
 
 def test_plain_h5py_finds_channels_with_units(result: Result, file: Path) -> None:
     with h5py.File(file, "r") as plain:
-        assert set(plain) == {"time", "scenario", *result.channels}
+        surface = {"surface_profile", "surface_profile_time", "surface_profile_place"}
+        assert set(plain) == {"time", "scenario", *surface, *result.channels}
         for name in result.channels:
             dataset = plain[name]
             assert dataset.dtype == np.dtype("<f8")

@@ -1,0 +1,57 @@
+"""The free surface along the tank at output instants, for pictures: from the modal amplitudes that a run records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from slosh_cli.arrays import Matrix, Vector
+from slosh_cli.results.channels import slosh_amplitude
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario
+
+_PLACES: Final = 33
+_MOST_TIMES: Final = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceProfile:
+    """Rise of the surface (m) over the still one: `rise` (times, places), at `time` s and at `place` m from the front
+    end wall. `standing` is "computed", or "assumed" where the scenario gives modes without their shapes."""
+
+    time: Vector
+    place: Vector
+    rise: Matrix
+    standing: str
+
+
+def surface_profile(scenario: Scenario, time: Vector, channels: Mapping[str, Vector]) -> SurfaceProfile | None:
+    """The surface of a load in modes or frozen, at not more than 1000 instants; None where only its ends are recorded.
+
+    The n-th mode is a cosine of 2 n - 1 half waves (theory section 4), one at the front wall where it lifts the liquid
+    there. Given modes count as those, from the lowest frequency on.
+    """
+    tank = scenario.tank
+    if tank.liquid.model not in ("modal", "rigid"):
+        return None
+    rows = np.unique(np.linspace(0, time.size - 1, min(time.size, _MOST_TIMES)).round().astype(np.int64))
+    place = np.linspace(0.0, tank.length, _PLACES)
+    rise, standing = np.zeros((rows.size, _PLACES)), "computed"
+    if tank.liquid.model == "modal":
+        count = sum(slosh_amplitude(n) in channels for n in range(1, len(channels) + 1))
+        shapes = [(n, 1.0) for n in range(count)]
+        if not isinstance(tank.coefficients, str):
+            standing = "assumed"
+            order = np.argsort(np.argsort([mode.frequency for mode in tank.coefficients], kind="stable"))
+            ways = np.sign([mode.lambda_1 for mode in tank.coefficients])
+            shapes = list(zip(order.tolist(), ways.tolist(), strict=True))
+        amplitude = np.stack([channels[slosh_amplitude(n + 1)][rows] for n in range(count)], axis=1)
+        rise = amplitude @ np.stack([way * np.cos((2 * n + 1) * np.pi * place / tank.length) for n, way in shapes])
+    walls = np.stack([channels["surface_front"][rows], channels["surface_rear"][rows]], axis=1)
+    if not np.allclose(rise[:, [0, -1]], walls, rtol=1e-9, atol=1e-9, equal_nan=True):
+        return None
+    return SurfaceProfile(time[rows], place, rise, standing)
