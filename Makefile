@@ -34,7 +34,7 @@ test-all: $(READY)
 	$(BIN)/python -m pytest
 
 # `make test` never runs the benchmarks: their files are not named test_*
-PARTS ?= contestants floor scaling startup
+PARTS ?= contestants floor scaling startup liquids
 BENCH = $(BIN)/python -m pytest -q --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
 bench: $(READY)

@@ -11,7 +11,7 @@ from typing import Any
 
 Record = Mapping[str, Any]
 
-PARTS = ("contestants", "floor", "scaling", "startup", "batch")
+PARTS = ("contestants", "floor", "scaling", "startup", "liquids", "batch")
 """Files of benchmarks, `bench_PART.py`; each leaves `PART.json`."""
 
 ALLOWED_ERROR = 2e-4
@@ -81,7 +81,14 @@ class Ratio:
 
 def ratios(records: list[dict[str, Any]]) -> list[Ratio]:
     """Every ratio that is asked for, in the order of the documentation."""
-    return [*_contests(records), *_floors(records), *_growth(records), *_studies(records), *_commands(records)]
+    return [
+        *_contests(records),
+        *_floors(records),
+        *_growth(records),
+        *_studies(records),
+        *_commands(records),
+        *_liquids(records),
+    ]
 
 
 def _over(other: Record | None, ours: Record | None) -> float | None:
@@ -158,4 +165,16 @@ def _commands(records: list[dict[str, Any]]) -> list[Ratio]:
             limit,
         )
         for name, limit in limits.items()
+    ]
+
+
+def _liquids(records: list[dict[str, Any]]) -> list[Ratio]:
+    stops = {one["model"]: one for one in of_kind(records, "liquid")}
+    cells = {one["model"]: one["cell"] / one["plain"] for one in of_kind(records, "cell")}
+    modal = stops.get("modal")
+    return [
+        Ratio("160 km/h, 10 kN m: shallow water / modal", _over(stops.get("shallow-water"), modal), 10.0),
+        Ratio("160 km/h, 10 kN m: with dispersion / modal", _over(stops.get("dispersion"), modal)),
+        Ratio("a cell and stage of shallow water / of a plain box", cells.get("shallow-water")),
+        Ratio("a cell and stage with dispersion / of a plain box", cells.get("dispersion")),
     ]
