@@ -43,7 +43,6 @@ class CellLiquid(Slosh):
     `start`, `end` are its cells at a step's ends; `work` (WORK_ROWS, cells + 1) and `sums` (4,) are scratch. The
     wagon's accelerations at the still liquid's centre are `by_force` per newton along x at the tank's bottom centre and
     `by_moment` per newton metre on the car's pitch, `along_by_force` is that of the track's coordinate.
-
     The account with the wagon: `force` (N) and `moment` (N m) are means over the step, `start_...`, `end_...` the push
     at its two ends; `following` (kg) is the added mass with which it follows the tank's acceleration, `held_...` the
     push at acceleration 0; `left_...` is owed from earlier steps, `owed_...` with this one (N s, N m s); `loss` (J) is

@@ -67,13 +67,8 @@ def _slopes(liquid, area, flow, depth, speeds, still, acceleration, slope_depth,
 
     Closed bulkheads and columns at rest (`still`) are walls.
     """
-    cells, mild, at, gravity, table = (
-        liquid.cells,
-        _MILD / liquid.cells,
-        liquid.baffles.at,
-        liquid.gravity,
-        liquid.table,
-    )
+    cells, at, gravity, table = liquid.cells, liquid.baffles.at, liquid.gravity, liquid.table
+    mild = _MILD / cells
     tilt = acceleration * liquid.spacing / gravity
     last = table.area.size - 1
     dry, roof = DRY * table.area[last], table.depth[last]

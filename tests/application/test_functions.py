@@ -190,7 +190,7 @@ def test_an_excitation_has_the_answers_of_the_command(paper: Scenario, capfd: py
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "say how the tank is decelerated: deceleration '0.2 g', or table FILE.csv"),
+        ({}, "say how the tank is decelerated: deceleration '0.2 g', table FILE.csv or motion FILE.csv"),
         ({"deceleration": "0.2"}, "deceleration must be an acceleration with its unit"),
         ({"deceleration": 0.0}, "deceleration: the tank must be decelerated at some time within duration"),
         ({"deceleration": float("inf")}, "deceleration must be finite; given `inf`"),
