@@ -194,9 +194,11 @@ def _take(document: Document, model: type[Part], place: Path, value: Any, origin
             document.remove(there)
         if depth == len(place) - 1:
             break
-        if step not in holds:
+        there = place[: depth + 1]
+        told_in_short = isinstance(holds.get(step), str) and origin.override and not document.overridden(there)
+        if step not in holds or told_in_short:
             holds[step] = {}
-            document.origins[place[: depth + 1]] = origin
+            document.origins[there] = origin
         holds = holds[step]
     holds[place[-1]] = value
     document.origins[place] = origin
