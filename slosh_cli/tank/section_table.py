@@ -117,15 +117,16 @@ def section_table(section: Section, gravity: float, slot_speed: float) -> Sectio
     width[0] = section.surface_width(1e-12 * section.height)  # the limit from inside, as at the top
     width[-1] = max(slot_width, section.surface_width(top * (1 - 1e-9)))
     first = area * centroid
+    pressure = depth * area - first
     across, gain = _across(depth, area, width)
     return SectionTable(
         depth=depth,
         area=area,
         width=width,
         first=first,
-        pressure=depth * area - first,
+        pressure=pressure,
         pressure_arm=depth * first - second,
-        curves=_curves(depth, area, width, depth * area - first),
+        curves=_curves(depth, area, width, pressure),
         across=across,
         gain=gain,
         depth_start=_starts(depth),
