@@ -222,13 +222,14 @@ def _height(liquid, depth):
 def motion_across(liquid, area, flow, depth, dry):
     """Energy (J) of the motion across the section, and the moment (N m s, nose-down) of its momentum."""
     cells, spacing, table, gravity = liquid.cells, liquid.spacing, liquid.table, liquid.gravity
-    energy = moment = 0.0
+    energy, moment, top = 0.0, 0.0, table.depth[table.depth.size - 1]
     for i in range(cells):
         beta, _, mean = _across(table, area[i], depth[i], dry)
         if beta <= 0.0:
             continue
         speed = _speed(area[i], flow[i], dry)
         _, sinking, _ = section_at(table, depth[i])
+        sinking *= min((1.0 - depth[i] / top) / _UNDER_THE_ROOF, 1.0)
         for side in (-1, 1):  # half of it at each of the cell's faces
             face = i if side < 0 else i + 1
             if face in (0, cells) or liquid.baffles.at[face] == CLOSED:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from shallow_tools import G, Moving, areas, depths, places
 
+from slosh_cli.results.simulate import simulate
 from slosh_cli.scenario import find_packaged, load_any_scenario
 from slosh_cli.section import EllipticalSection, RectangularSection, section_of
 from slosh_cli.solver.deceleration import Deceleration
@@ -166,3 +167,36 @@ def test_a_violently_braked_liquid_pushes_no_harder_than_shallow_water_by_half(f
     ]
     assert all(not found.reason for found in peaks)
     assert peaks[0].force.max() < 1.5 * peaks[1].force.max()
+
+
+@pytest.mark.parametrize(("shape", "length"), [(BOX, 15.5), (BOX, 6.0), (CYLINDER, 15.5)])
+def test_force_and_moment_of_small_waves_are_linear_theorys(shape, length):
+    """With fifteen modes; shallow water misses both by some thirty times as much and more."""
+    gentle = Deceleration.ramped(0.005, 2.0)
+    runs = [excite(tank_of(shape, 0.5, length, dispersion=word), gentle, 12.0, 0.05) for word in ("on", "off")]
+    words = f"tank={{{shape}, fill: 0.5, length: {length} m, modes: 15, liquid: {{model: modal, density: 830 kg/m^3}}}}"
+    exact = excite(load_any_scenario(find_packaged("kolaei-half"), [words]).tank, gentle, 12.0, 0.05)
+    for name, allowed in (("force", 5e-3), ("moment", 3e-3)):
+        on, off = (miss(getattr(run, name), getattr(exact, name)) for run in runs)
+        assert on < allowed, name
+        assert on < off / 25, name
+
+
+def miss(found, exact):
+    """Root mean square difference over the largest value."""
+    return float(np.sqrt(np.mean((found - exact) ** 2)) / np.abs(exact).max())
+
+
+@pytest.mark.parametrize(("fill", "torque"), [(0.5, 3), (0.5, 10), (0.8, 10)])
+def test_a_wagon_stops_with_a_closed_ledger_and_feels_what_rides_along(fill, torque):
+    words = ["tank.coefficients=computed", f"tank.fill={fill}", f"braking.torque={torque} kN m"]
+    stops = [
+        simulate(load_any_scenario(find_packaged("paper-80-liquid"), [*words, f"tank.liquid={liquid}"]))
+        for liquid in (
+            "{model: shallow-water, density: 830 kg/m^3, dispersion: on}",
+            "{model: shallow-water, density: 830 kg/m^3}",
+        )
+    ]
+    assert all(stop.status == "stopped" and stop.energy_residual < 1e-4 for stop in stops)
+    assert stops[0].braking_distance_m == pytest.approx(stops[1].braking_distance_m, rel=3e-3)
+    assert stops[0].steps < 3 * stops[1].steps
