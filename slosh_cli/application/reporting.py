@@ -174,7 +174,9 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
 
     facts = history.attributes
     checks = json.loads(facts["checks"]) if "checks" in facts else []
-    inputs = list(_flat(parse(history.scenario_text, "the scenario of the run").data))
+    given = dict(parse(history.scenario_text, "the scenario of the run").data)
+    taken = given.pop("presets", {})
+    inputs = [(key, value, _standing(key, taken)) for key, value in _flat(given)]
     answers = [
         (one.meaning, _words(getattr(history, one.name)), one.unit)
         for one in history.table()
@@ -202,9 +204,9 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
         page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
         page_table(
             "Inputs",
-            ("key", "value"),
+            ("key", "value", "standing"),
             inputs,
-            "As resolved, with units. The file keeps no word on which were defaults.",
+            "As resolved, with units. Default: the file said nothing of it; else the preset it was taken from.",
         ),
         page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
         _facts_table("Provenance", facts, _PROVENANCE),
@@ -219,6 +221,14 @@ def _flat(data: Any, key: str = "") -> Iterator[tuple[str, str]]:
             yield from _flat(value, f"{key}.{name}" if key else str(name))
     else:
         yield key, str(data)
+
+
+def _standing(key: str, taken: Mapping[str, str]) -> str:
+    """What gave the value at a key path where the file did not: `default`, or a preset."""
+    from slosh_cli.scenario.presets import DEFAULT
+
+    found = (name for path, name in taken.items() if key == path or key.startswith(f"{path}."))
+    return next((name if name == DEFAULT else f"preset {name}" for name in found), "")
 
 
 def _said(name: str, before: str = "", after: str = "") -> str:

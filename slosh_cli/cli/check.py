@@ -68,12 +68,15 @@ def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_j
     if as_json:
         found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
         found |= {"data_sheet": sheet, "resonances": told}
+        if isinstance(scenario, Scenario):
+            found["defaults"] = scenario.defaults
         if track and level:
             found["unevenness_d1_m"] = realised_level(track.unevenness)
         say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
     else:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        for line in (*_lines(sheet), *told, *([level] if level else []), advice.sentence):
+        defaults = _defaults(scenario.defaults if isinstance(scenario, Scenario) else {})
+        for line in (*_lines(sheet), *defaults, *told, *([level] if level else []), advice.sentence):
             say(line)
         for warning in warnings:
             warn(warning)
@@ -89,3 +92,15 @@ def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:
             value = sheet[name]
             yield f"  {label:<36}{'-' if value is None else format(value, form):>10} {unit}".rstrip()
     yield ""
+
+
+def _defaults(values: Mapping[str, str]) -> Iterator[str]:
+    """What the file leaves to the program, a line for each part."""
+    parts: dict[str, list[str]] = {}
+    for key, text in values.items():
+        part, _, name = key.rpartition(".")
+        parts.setdefault(part, []).append(f"{name} {text}")
+    yield from ["Defaults, where the file says nothing (`slosh presets default`)"] if parts else []
+    for part, told in parts.items():
+        yield f"  {part}: {', '.join(told)}"
+    yield from [""] if parts else []

@@ -94,3 +94,15 @@ def test_the_data_sheet_of_a_stop(slosh: Slosh) -> None:
     sheet = told(slosh, PAPER, "tank.fill=0.5")["data_sheet"]
     assert 2 * (sheet["axle_load_front_t"] + sheet["axle_load_rear_t"]) == pytest.approx(sheet["gross_mass_t"])
     assert f"{sheet['tau']:.3f}" in slosh("check", PAPER, *COMPUTED, "--set", "tank.fill=0.5").out
+
+
+def test_defaults_are_told(slosh: Slosh) -> None:
+    text = PAPER.read_text(encoding="utf-8")
+    Path("bare.yaml").write_text(f"{text[: text.index('contact:')]}{text[text.index('braking:') :]}", encoding="utf-8")
+    told = json.loads(slosh("check", "bare.yaml", "--json", *COMPUTED).out)["defaults"]
+    assert told["contact.adhesion"] == "dry"
+    assert told["contact.youngs_modulus"] == "2.1e11 Pa"
+    assert "track.domain.length" not in told
+    assert "track.rail.youngs_modulus" not in told
+    assert "contact: youngs_modulus 2.1e11 Pa, poisson_ratio 0.3" in slosh("check", "bare.yaml", *COMPUTED).out
+    assert "contact: " not in slosh("check", PAPER, *COMPUTED).out
