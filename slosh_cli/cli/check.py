@@ -1,11 +1,18 @@
 """`slosh check`: whether a scenario is sound, without running it."""
 
 from collections.abc import Iterator, Mapping
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson, Overrides, ScenarioFile
+from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded
 from slosh_cli.cli.output import say, say_json, warn
+from slosh_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario
 
 _SHEET: Final = {
     "Mass and volume": {
@@ -39,48 +46,65 @@ _SHEET: Final = {
 """The data sheet as the terminal shows it: groups of label, format and unit by name."""
 
 
-def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJson = False) -> ExitCode:
+_SENSITIVITY: Final = "Run the stop with each uncertain value up and down: tells what it depends on, with a chart."
+
+
+def check_command(
+    scenario_file: ScenarioFile,
+    overrides: Overrides = None,
+    sensitivity: Annotated[bool, typer.Option("--sensitivity", help=_SENSITIVITY)] = False,
+    jobs: Threaded = None,
+    output: OutputFolder = None,
+    as_json: AsJson = False,
+) -> ExitCode:
     """Check a scenario without running it.
 
     Every mistake is named with its line, all of them at once. The data sheet tells masses, the brake and the periods of
-    what is sound. What is allowed but unlikely, or will lead to overload, locked wheels or a liquid outside its model,
-    is warned of.
+    what is sound, and what the program takes where the file says nothing. What is allowed but unlikely, or will lead to
+    overload, locked wheels or a liquid outside its model, is warned of.
     """
-    from slosh_cli.scenario.train_file import is_train_file
-
-    if is_train_file(scenario_file):
-        from slosh_cli.cli.train import check_train
-
-        return check_train(scenario_file, overrides, as_json=as_json)
     from slosh_cli.application.stop import outlook
     from slosh_cli.cli.reading import load_given
     from slosh_cli.results.data_sheet import data_sheet, resonances
     from slosh_cli.results.validity import plain_checks, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
+    from slosh_cli.scenario.train_file import is_train_file
     from slosh_cli.track.spectrum import level_words, realised_level
 
+    if is_train_file(scenario_file):
+        from slosh_cli.cli.train import check_train
+
+        _refuse(sensitivity, scenario_file, "a train")
+        return check_train(scenario_file, overrides, as_json=as_json)
     scenario = load_given(load_any_scenario, scenario_file, overrides)
-    kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
+    stop = scenario if isinstance(scenario, Scenario) else None
+    _refuse(sensitivity and stop is None, scenario_file, "a tank alone")
+    kind = "a stop" if stop else "a tank alone"
     verdicts, advice = outlook(scenario)
     warnings, sheet = warnings_of(verdicts), data_sheet(scenario)
-    track = scenario.track if isinstance(scenario, Scenario) else None
-    level, told = level_words(track.unevenness) if track else "", resonances(sheet)
-    if as_json:
-        found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
-        found |= {"data_sheet": sheet, "resonances": told}
-        if isinstance(scenario, Scenario):
-            found["defaults"] = scenario.defaults
-        if track and level:
-            found["unevenness_d1_m"] = realised_level(track.unevenness)
-        say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
-    else:
+    level, told = level_words(stop.track.unevenness) if stop else "", resonances(sheet)
+    found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
+    found |= {"data_sheet": sheet, "resonances": told} | ({"defaults": stop.defaults} if stop else {})
+    found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
+    found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings}
+    if not as_json:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        defaults = _defaults(scenario.defaults if isinstance(scenario, Scenario) else {})
-        for line in (*_lines(sheet), *defaults, *told, *([level] if level else []), advice.sentence):
+        for line in (*_lines(sheet), *_defaults(stop), *told, *([level] if level else []), advice.sentence):
             say(line)
         for warning in warnings:
             warn(warning)
+    if sensitivity and stop:
+        from slosh_cli.cli.sensitivity_output import vary_and_tell
+
+        return vary_and_tell(stop, jobs, output, overrides, found if as_json else None)
+    if as_json:
+        say_json(found)
     return ExitCode.DONE
+
+
+def _refuse(asked: bool, file: Path, what: str) -> None:
+    if asked:
+        raise UsageError(f"--sensitivity needs the stop of one wagon; given {file}, {what}", "--sensitivity")
 
 
 def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:
@@ -94,10 +118,10 @@ def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:
     yield ""
 
 
-def _defaults(values: Mapping[str, str]) -> Iterator[str]:
+def _defaults(stop: "Scenario | None") -> Iterator[str]:
     """What the file leaves to the program, a line for each part."""
     parts: dict[str, list[str]] = {}
-    for key, text in values.items():
+    for key, text in (stop.defaults if stop else {}).items():
         part, _, name = key.rpartition(".")
         parts.setdefault(part, []).append(f"{name} {text}")
     yield from ["Defaults, where the file says nothing (`slosh presets default`)"] if parts else []
