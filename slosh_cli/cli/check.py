@@ -2,17 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded
-from slosh_cli.cli.output import say, say_json, warn
+from slosh_cli.cli.output import default_lines, say, say_json, warn
 from slosh_cli.errors import UsageError
-
-if TYPE_CHECKING:
-    from slosh_cli.scenario import Scenario
 
 _SHEET: Final = {
     "Mass and volume": {
@@ -89,7 +86,13 @@ def check_command(
     found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings}
     if not as_json:
         say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        for line in (*_lines(sheet), *_defaults(stop), *told, *([level] if level else []), advice.sentence):
+        for line in (
+            *_lines(sheet),
+            *default_lines(stop.defaults if stop else {}),
+            *told,
+            *([level] if level else []),
+            advice.sentence,
+        ):
             say(line)
         for warning in warnings:
             warn(warning)
@@ -116,15 +119,3 @@ def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:
             value = sheet[name]
             yield f"  {label:<36}{'-' if value is None else format(value, form):>10} {unit}".rstrip()
     yield ""
-
-
-def _defaults(stop: "Scenario | None") -> Iterator[str]:
-    """What the file leaves to the program, a line for each part."""
-    parts: dict[str, list[str]] = {}
-    for key, text in (stop.defaults if stop else {}).items():
-        part, _, name = key.rpartition(".")
-        parts.setdefault(part, []).append(f"{name} {text}")
-    yield from ["Defaults, where the file says nothing (`slosh presets default`)"] if parts else []
-    for part, told in parts.items():
-        yield f"  {part}: {', '.join(told)}"
-    yield from [""] if parts else []

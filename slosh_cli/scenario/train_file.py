@@ -273,15 +273,21 @@ def _at_its_place(
 def _with_shared(file: TrainFile, document: Document, path: Path, found: Sequence[Scenario]) -> Iterator[Scenario]:
     """The vehicles with what the train says for all of them, or else the first one; each kind is checked once."""
     settings = {key: getattr(found[0], key) for key in SHARED} | file.settings
+    lent = {
+        key: name
+        for key, name in found[0].presets.items()
+        if key.partition(".")[0] in set(SHARED) - file.settings.keys()
+    }
     kinds: dict[int, Scenario] = {}
     for number, scenario in enumerate(found, 1):
         if id(scenario) not in kinds:
             own = {} if file.track is not None else {TRACK_MODEL: scenario.track.model}
             try:
-                kinds[id(scenario)] = scenario.with_(settings | own)
+                made = scenario.with_(settings | own)
             except ScenarioError as error:
                 told = [replace(problem, line=document.origin(("braking",)).line) for problem in error.problems]
                 raise ScenarioError(f"{path}, vehicle {number} ({scenario.name})", told) from None
+            kinds[id(scenario)] = made.model_copy(update={"presets": made.presets | lent}) if lent else made
         yield kinds[id(scenario)]
 
 
