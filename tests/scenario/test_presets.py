@@ -202,6 +202,13 @@ def test_a_preset_holds_against_defaults_and_what_matters_is_required(tmp_path: 
     assert "wagon: is required" in told
 
 
+def test_given_coefficients_belong_to_their_tank_where_the_track_is_left_out(tmp_path: Path) -> None:
+    text = scenario_to_yaml(load_scenario("paper-80-liquid"))
+    bare = text[: text.index("track:")] + text[text.index("contact:") :]
+    assert load_scenario(_file(tmp_path, bare), ["tank.liquid.damping_ratio=0.01"]).tank.coefficients != "computed"
+    assert "the given slosh coefficients belong to the unchanged tank" in _refusal(tmp_path, "tank.fill=0.9", text=bare)
+
+
 def test_a_misspelt_key_with_a_default_is_guessed(tmp_path: Path) -> None:
     told = _refusal(tmp_path, text=_TEXT.replace("kalker_c11", "kalker_c1"))
     assert told == "mine.yaml:9: contact.kalker_c1: is not a key of `contact`; given `kalker_c1`; write `kalker_c11`"
@@ -225,6 +232,9 @@ def test_the_editor_schema_allows_use() -> None:
     jsonschema = pytest.importorskip("jsonschema")
     schema = json.loads(json.dumps(json_schema()))
     jsonschema.validate(parse(_TEXT, "mine").data, schema)
+    jsonschema.validate(parse(_LEFT_OUT, "mine").data, schema)
+    jsonschema.validate(parse(_LEFT_OUT + "track: {rail: {mass_per_length: 54 kg/m}}\n", "mine").data, schema)
+    assert schema["$defs"]["Contact"]["properties"]["adhesion"]["default"] == "dry"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(parse(_TEXT.replace("use: uic60-ballast", "use: 5"), "mine").data, schema)
     with pytest.raises(jsonschema.ValidationError):
