@@ -170,13 +170,9 @@ def _chart(history: History, rows: Integers, title: str, scale: float, names: Se
 
 def _run_tables(history: History) -> list[dict[str, Any]]:
     """Answers, checks, inputs, ledger and provenance."""
-    from slosh_cli.scenario.yaml_text import parse
-
     facts = history.attributes
     checks = json.loads(facts["checks"]) if "checks" in facts else []
-    given = dict(parse(history.scenario_text, "the scenario of the run").data)
-    taken = given.pop("presets", {})
-    inputs = [(key, value, _standing(key, taken)) for key, value in _flat(given)]
+    inputs = list(_inputs(history.scenario_text))
     answers = [
         (one.meaning, _words(getattr(history, one.name)), one.unit)
         for one in history.table()
@@ -223,12 +219,16 @@ def _flat(data: Any, key: str = "") -> Iterator[tuple[str, str]]:
         yield key, str(data)
 
 
-def _standing(key: str, taken: Mapping[str, str]) -> str:
-    """What gave the value at a key path where the file did not: `default`, or a preset."""
-    from slosh_cli.scenario.presets import DEFAULT
+def _inputs(text: str) -> Iterator[tuple[str, str, str]]:
+    """Key paths and values of a scenario with what gave them where the file did not: `default`, or a preset."""
+    from slosh_cli.scenario.presets import DEFAULT, TAKEN
+    from slosh_cli.scenario.yaml_text import parse
 
-    found = (name for path, name in taken.items() if key == path or key.startswith(f"{path}."))
-    return next((name if name == DEFAULT else f"preset {name}" for name in found), "")
+    given = dict(parse(text, "the scenario of the run").data)
+    taken = given.pop(TAKEN, {})
+    for key, value in _flat(given):
+        found = (name for path, name in taken.items() if key == path or key.startswith(f"{path}."))
+        yield key, value, next((name if name == DEFAULT else f"preset {name}" for name in found), "")
 
 
 def _said(name: str, before: str = "", after: str = "") -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -10,6 +10,9 @@ from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded
 from slosh_cli.cli.output import default_lines, say, say_json, warn
 from slosh_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario, TankScenario
 
 _SHEET: Final = {
     "Mass and volume": {
@@ -60,13 +63,9 @@ def check_command(
     what is sound, and what the program takes where the file says nothing. What is allowed but unlikely, or will lead to
     overload, locked wheels or a liquid outside its model, is warned of.
     """
-    from slosh_cli.application.stop import outlook
     from slosh_cli.cli.reading import load_given
-    from slosh_cli.results.data_sheet import data_sheet, resonances
-    from slosh_cli.results.validity import plain_checks, warnings_of
     from slosh_cli.scenario import Scenario, load_any_scenario
     from slosh_cli.scenario.train_file import is_train_file
-    from slosh_cli.track.spectrum import level_words, realised_level
 
     if is_train_file(scenario_file):
         from slosh_cli.cli.train import check_train
@@ -76,25 +75,11 @@ def check_command(
     scenario = load_given(load_any_scenario, scenario_file, overrides)
     stop = scenario if isinstance(scenario, Scenario) else None
     _refuse(sensitivity and stop is None, scenario_file, "a tank alone")
-    kind = "a stop" if stop else "a tank alone"
-    verdicts, advice = outlook(scenario)
-    warnings, sheet = warnings_of(verdicts), data_sheet(scenario)
-    level, told = level_words(stop.track.unevenness) if stop else "", resonances(sheet)
-    found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
-    found |= {"data_sheet": sheet, "resonances": told} | ({"defaults": stop.defaults} if stop else {})
-    found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
-    found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings}
+    found, lines = _found(scenario_file, scenario, stop)
     if not as_json:
-        say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        for line in (
-            *_lines(sheet),
-            *default_lines(stop.defaults if stop else {}),
-            *told,
-            *([level] if level else []),
-            advice.sentence,
-        ):
+        for line in lines:
             say(line)
-        for warning in warnings:
+        for warning in found["warnings"]:
             warn(warning)
     if sensitivity and stop:
         from slosh_cli.cli.sensitivity_output import vary_and_tell
@@ -103,6 +88,26 @@ def check_command(
     if as_json:
         say_json(found)
     return ExitCode.DONE
+
+
+def _found(
+    file: Path, scenario: "Scenario | TankScenario", stop: "Scenario | None"
+) -> tuple[dict[str, Any], list[str]]:
+    """What there is to tell of a sound scenario, which may be a `stop`: as JSON has it, and in lines."""
+    from slosh_cli.application.stop import outlook
+    from slosh_cli.results.data_sheet import data_sheet, resonances
+    from slosh_cli.results.validity import plain_checks, warnings_of
+    from slosh_cli.track.spectrum import level_words, realised_level
+
+    kind, defaults = ("a stop", stop.defaults) if stop else ("a tank alone", {})
+    (verdicts, advice), sheet = outlook(scenario), data_sheet(scenario)
+    level, told = level_words(stop.track.unevenness) if stop else "", resonances(sheet)
+    found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(file)}
+    found |= {"data_sheet": sheet, "resonances": told} | ({"defaults": defaults} if stop else {})
+    found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
+    found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings_of(verdicts)}
+    lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet), *default_lines(defaults), *told]
+    return found, [*lines, *([level] if level else []), advice.sentence]
 
 
 def _refuse(asked: bool, file: Path, what: str) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -207,6 +208,9 @@ def test_given_coefficients_belong_to_their_tank_where_the_track_is_left_out(tmp
     bare = text[: text.index("track:")] + text[text.index("contact:") :]
     assert load_scenario(_file(tmp_path, bare), ["braking.torque=4 kN m"]).tank.coefficients != "computed"
     assert "the given slosh coefficients belong to the unchanged tank" in _refusal(tmp_path, "tank.fill=0.9", text=bare)
+    light = re.sub(r"  running_resistance:\n(?:    .*\n)+", "", bare).replace("  fill: 0.5", "  gross_mass: 80 t")
+    told = _refusal(tmp_path, "wagon.car_body.mass=15 t", text=light)
+    assert "the given slosh coefficients belong to the unchanged tank" in told
 
 
 def test_a_misspelt_key_with_a_default_is_guessed(tmp_path: Path) -> None:
