@@ -47,7 +47,7 @@ def default_lines(values: Mapping[str, str]) -> Iterator[str]:
     for key, text in values.items():
         part, _, name = key.rpartition(".")
         parts.setdefault(part, []).append(f"{name} {text}")
-    yield from ["Defaults, where the file says nothing (`slosh presets default`)"] if parts else []
+    yield from ["Values that are the defaults of the program (`slosh presets default`)"] if parts else []
     for part, told in parts.items():
         yield f"  {part}: {', '.join(told)}"
     yield from [""] if parts else []

@@ -35,7 +35,7 @@ def tornado(found: Any) -> Figure:
         axes.set_xlabel(label)
     panels[0].set_yticks(range(len(told)), [f"{one.doubt.key} ({one.doubt.standing})" for one in told], fontsize=10)
     panels[0].set_ylim(max(len(told), 1) - 0.4, -0.6)
-    hidden = len(found.effects) - len(mattering)
+    hidden = sum(not one.matters(found.base) and not one.refusal for one in found.effects)
     under = f"{hidden}{' other' if mattering else ''} values change none of the three by more than the shaded band"
     title = f"{found.scenario.name}: what the stop depends on\n{under}"
     figure.suptitle(title, x=0.01, ha="left", fontsize=13, color=INK, parse_math=False)
@@ -51,7 +51,7 @@ def _draw(axes: Any, found: Any, told: list[Any], name: str, factor: float) -> N
         axes.axvspan((own - width) * factor, (own + width) * factor, color="#f0f0f0", zorder=0)
         axes.axvline(own * factor, color=MUTED, linewidth=1.0, zorder=3)
     else:
-        axes.text(0.5, 0.5, "the scenario itself locks no wheel", transform=axes.transAxes, ha="center", color=MUTED)
+        axes.set_title("the scenario itself locks no wheel", fontsize=10, color=MUTED)
         axes.set_xticks([])
     for place, effect in enumerate(told):
         for row, colour, offset in zip(effect.rows, (_LOW, _HIGH), (-0.2, 0.2), strict=True):
