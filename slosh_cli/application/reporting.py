@@ -170,11 +170,9 @@ def _chart(history: History, rows: Integers, title: str, scale: float, names: Se
 
 def _run_tables(history: History) -> list[dict[str, Any]]:
     """Answers, checks, inputs, ledger and provenance."""
-    from slosh_cli.scenario.yaml_text import parse
-
     facts = history.attributes
     checks = json.loads(facts["checks"]) if "checks" in facts else []
-    inputs = list(_flat(parse(history.scenario_text, "the scenario of the run").data))
+    inputs = list(_inputs(history.scenario_text))
     answers = [
         (one.meaning, _words(getattr(history, one.name)), one.unit)
         for one in history.table()
@@ -202,9 +200,9 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
         page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
         page_table(
             "Inputs",
-            ("key", "value"),
+            ("key", "value", "standing"),
             inputs,
-            "As resolved, with units. The file keeps no word on which were defaults.",
+            "As resolved, with units. Default: the file said nothing of it; else the preset it was taken from.",
         ),
         page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
         _facts_table("Provenance", facts, _PROVENANCE),
@@ -219,6 +217,18 @@ def _flat(data: Any, key: str = "") -> Iterator[tuple[str, str]]:
             yield from _flat(value, f"{key}.{name}" if key else str(name))
     else:
         yield key, str(data)
+
+
+def _inputs(text: str) -> Iterator[tuple[str, str, str]]:
+    """Key paths and values of a scenario with what gave them where the file did not: `default`, or a preset."""
+    from slosh_cli.scenario.presets import DEFAULT, TAKEN
+    from slosh_cli.scenario.yaml_text import parse
+
+    given = dict(parse(text, "the scenario of the run").data)
+    taken = given.pop(TAKEN, {})
+    for key, value in _flat(given):
+        found = (name for path, name in taken.items() if key == path or key.startswith(f"{path}."))
+        yield key, value, next((name if name == DEFAULT else f"preset {name}" for name in found), "")
 
 
 def _said(name: str, before: str = "", after: str = "") -> str:

@@ -30,7 +30,7 @@ def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recom
     from slosh_cli.results.line import descent_checks
     from slosh_cli.results.liquid_range import expected_checks, tank_checks
     from slosh_cli.results.recommendation import deceleration_of, recommend
-    from slosh_cli.results.wagon_range import lock_check, speed_check, wagon_checks
+    from slosh_cli.results.wagon_range import default_adhesion_checks, lock_check, speed_check, wagon_checks
 
     tank, deceleration = scenario.tank, deceleration_of(scenario)
     advice = recommend(tank, deceleration)
@@ -39,6 +39,7 @@ def outlook(scenario: Scenario | TankScenario) -> tuple[tuple[Check, ...], Recom
         verdicts += expected_checks(tank, deceleration, advice.sentence)
     if isinstance(scenario, Scenario):
         verdicts += (*wagon_checks(scenario), speed_check(scenario), lock_check(scenario), *descent_checks(scenario))
+        verdicts += tuple(default_adhesion_checks(scenario))
     return verdicts, advice
 
 

@@ -1,11 +1,18 @@
 """`slosh check`: whether a scenario is sound, without running it."""
 
 from collections.abc import Iterator, Mapping
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson, Overrides, ScenarioFile
-from slosh_cli.cli.output import say, say_json, warn
+from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded
+from slosh_cli.cli.output import default_lines, say, say_json, warn
+from slosh_cli.errors import UsageError
+
+if TYPE_CHECKING:
+    from slosh_cli.scenario import Scenario, TankScenario
 
 _SHEET: Final = {
     "Mass and volume": {
@@ -39,45 +46,73 @@ _SHEET: Final = {
 """The data sheet as the terminal shows it: groups of label, format and unit by name."""
 
 
-def check_command(scenario_file: ScenarioFile, overrides: Overrides = None, as_json: AsJson = False) -> ExitCode:
+_SENSITIVITY: Final = "Run the stop with each uncertain value up and down: tells what it depends on, with a chart."
+
+
+def check_command(
+    scenario_file: ScenarioFile,
+    overrides: Overrides = None,
+    sensitivity: Annotated[bool, typer.Option("--sensitivity", help=_SENSITIVITY)] = False,
+    jobs: Threaded = None,
+    output: OutputFolder = None,
+    as_json: AsJson = False,
+) -> ExitCode:
     """Check a scenario without running it.
 
     Every mistake is named with its line, all of them at once. The data sheet tells masses, the brake and the periods of
-    what is sound. What is allowed but unlikely, or will lead to overload, locked wheels or a liquid outside its model,
-    is warned of.
+    what is sound, and what the program takes where the file says nothing. What is allowed but unlikely, or will lead to
+    overload, locked wheels or a liquid outside its model, is warned of.
     """
+    from slosh_cli.cli.reading import load_given
+    from slosh_cli.scenario import Scenario, load_any_scenario
     from slosh_cli.scenario.train_file import is_train_file
 
     if is_train_file(scenario_file):
         from slosh_cli.cli.train import check_train
 
+        _refuse(sensitivity, scenario_file, "a train")
         return check_train(scenario_file, overrides, as_json=as_json)
+    scenario = load_given(load_any_scenario, scenario_file, overrides)
+    stop = scenario if isinstance(scenario, Scenario) else None
+    _refuse(sensitivity and stop is None, scenario_file, "a tank alone")
+    found, lines = _found(scenario_file, scenario, stop)
+    if not as_json:
+        for line in lines:
+            say(line)
+        for warning in found["warnings"]:
+            warn(warning)
+    if sensitivity and stop:
+        from slosh_cli.cli.sensitivity_output import vary_and_tell
+
+        return vary_and_tell(stop, jobs, output, overrides, found if as_json else None)
+    if as_json:
+        say_json(found)
+    return ExitCode.DONE
+
+
+def _found(
+    file: Path, scenario: "Scenario | TankScenario", stop: "Scenario | None"
+) -> tuple[dict[str, Any], list[str]]:
+    """What there is to tell of a sound scenario, which may be a `stop`: as JSON has it, and in lines."""
     from slosh_cli.application.stop import outlook
-    from slosh_cli.cli.reading import load_given
     from slosh_cli.results.data_sheet import data_sheet, resonances
     from slosh_cli.results.validity import plain_checks, warnings_of
-    from slosh_cli.scenario import Scenario, load_any_scenario
     from slosh_cli.track.spectrum import level_words, realised_level
 
-    scenario = load_given(load_any_scenario, scenario_file, overrides)
-    kind = "a stop" if isinstance(scenario, Scenario) else "a tank alone"
-    verdicts, advice = outlook(scenario)
-    warnings, sheet = warnings_of(verdicts), data_sheet(scenario)
-    track = scenario.track if isinstance(scenario, Scenario) else None
-    level, told = level_words(track.unevenness) if track else "", resonances(sheet)
-    if as_json:
-        found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(scenario_file)}
-        found |= {"data_sheet": sheet, "resonances": told}
-        if track and level:
-            found["unevenness_d1_m"] = realised_level(track.unevenness)
-        say_json(found | {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings})
-    else:
-        say(f"{scenario_file}: {scenario.name} is a sound scenario ({kind})")
-        for line in (*_lines(sheet), *told, *([level] if level else []), advice.sentence):
-            say(line)
-        for warning in warnings:
-            warn(warning)
-    return ExitCode.DONE
+    kind, defaults = ("a stop", stop.defaults) if stop else ("a tank alone", {})
+    (verdicts, advice), sheet = outlook(scenario), data_sheet(scenario)
+    level, told = level_words(stop.track.unevenness) if stop else "", resonances(sheet)
+    found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(file)}
+    found |= {"data_sheet": sheet, "resonances": told} | ({"defaults": defaults} if stop else {})
+    found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
+    found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings_of(verdicts)}
+    lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet), *default_lines(defaults), *told]
+    return found, [*lines, *([level] if level else []), advice.sentence]
+
+
+def _refuse(asked: bool, file: Path, what: str) -> None:
+    if asked:
+        raise UsageError(f"--sensitivity needs the stop of one wagon; given {file}, {what}", "--sensitivity")
 
 
 def _lines(sheet: Mapping[str, float | None]) -> Iterator[str]:

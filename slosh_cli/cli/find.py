@@ -5,7 +5,7 @@ from typing import Annotated, Final
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, option
+from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded, option
 
 _VARY: Final = """Key and range: --vary 'braking.torque=2:30 kN m'; the key alone stands for half to double the file's
 own value. Of a train: all.KEY, vehicles.N.KEY or a key of its own."""
@@ -14,7 +14,6 @@ _UNTIL: Final = "What is sought: first_lock, max_wheel_unloading=0.6, 'braking_d
 _CROSSING: Final = "Which of several crossings, from the low end. Default: 1."
 _POINTS: Final = "Stops of the scan, 5 to 1000. Default: 17. More find what is narrower."
 Scanned = Annotated[int, option("--points", "N", _POINTS)]
-Threaded = Annotated[int | None, option("--jobs", "N", "Threads. Default: one per core.", min=1)]
 
 
 def find_command(

@@ -5,8 +5,8 @@ from typing import Annotated, Final
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.find import Scanned, Threaded, Varied
-from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, option
+from slosh_cli.cli.find import Scanned, Varied
+from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile, Threaded, option
 
 _WITHIN: Final = "A limit to keep: --within 'max_wheel_unloading<=0.6', 'locked_time<=0 s'. May be repeated."
 _LEAST: Final = "The answer to make least. Default: braking_distance."

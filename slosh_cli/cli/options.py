@@ -27,3 +27,4 @@ OutputFolder = Annotated[
     Path | None,
     option("--output -o", "DIR", "Folder for the files. Default: outputs/, the scenario's name and what was --set."),
 ]
+Threaded = Annotated[int | None, option("--jobs", "N", "Threads. Default: one per core.", min=1)]

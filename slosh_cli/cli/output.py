@@ -5,7 +5,7 @@ import math
 import numbers
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
@@ -39,6 +39,18 @@ def complain(text: str) -> None:
 def say_json(value: Mapping[str, Any]) -> None:
     """Print one JSON object to stdout: plain ASCII, no NaN or infinity (null stands for them)."""
     _to_stdout(json.dumps(_strict(value), allow_nan=False, indent=2) + "\n")
+
+
+def default_lines(values: Mapping[str, str]) -> Iterator[str]:
+    """What a scenario leaves to the program, by key paths: a line for each part."""
+    parts: dict[str, list[str]] = {}
+    for key, text in values.items():
+        part, _, name = key.rpartition(".")
+        parts.setdefault(part, []).append(f"{name} {text}")
+    yield from ["Values that are the defaults of the program (`slosh presets default`)"] if parts else []
+    for part, told in parts.items():
+        yield f"  {part}: {', '.join(told)}"
+    yield from [""] if parts else []
 
 
 def show(*renderables: "RenderableType", whole: bool = False) -> None:

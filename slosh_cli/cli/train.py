@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import note, say, say_json, show, warn
+from slosh_cli.cli.output import default_lines, note, say, say_json, show, warn
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -45,7 +45,7 @@ def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -
     length = sum(one.wagon.length_in_train for one in vehicles)
     if as_json:
         found = {"name": train.name, "valid": True, "describes": "a train", "file": str(file), "length_m": length}
-        each = [{"name": one.name, "onset_s": one.braking.onset} for one in vehicles]
+        each = [{"name": one.name, "onset_s": one.braking.onset, "defaults": one.defaults} for one in vehicles]
         say_json(found | {"vehicles": each, "warnings": list(warnings)})
         return ExitCode.DONE
     say(f"{file}: {train.name} is a sound train of {len(vehicles)} vehicles, {length:.1f} m long")
@@ -53,6 +53,8 @@ def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -
     say("Vehicles: " + ", ".join(f"{sum(one.name == kind for one in vehicles)} x {kind}" for kind in kinds))
     onsets = f"{vehicles[0].braking.onset:.2f} s at the front and {last.braking.onset:.2f} s at the end"
     say(f"The brakes set in after {onsets}")
+    for line in default_lines({key: text for one in vehicles for key, text in one.defaults.items()}):
+        say(line)
     for warning in warnings:
         warn(warning)
     return ExitCode.DONE

@@ -237,3 +237,15 @@ def lock_check(scenario: Scenario) -> Check:
         f"The brake asks for {asked / 1e3:.3g} kN at each wheel, but the rail gives at most {given.min() / 1e3:.3g} kN "
         f"under the least loaded one: locked wheels, with a rigid load {over}, will slide and wear flat.",
     )
+
+
+def default_adhesion_checks(scenario: Scenario) -> Iterator[Check]:
+    """Whether a stop whose file says nothing of the adhesion would lock wheels on wet rail, where dry rail is taken."""
+    if "contact.adhesion" not in scenario.defaults:
+        return
+    wet = lock_check(scenario.with_({"contact.adhesion": "wet"}))
+    meaning = (
+        "The file says nothing of `contact.adhesion`: dry rail is taken. On wet rail the brake asks for more than the "
+        "rail gives, wheels lock, and the stop is another; write `adhesion: dry` or `adhesion: wet`."
+    )
+    yield Check("brake force over adhesion, wet rail", "input", wet.value, wet.limit, meaning, "assumed", "Polach 2005")

@@ -54,7 +54,8 @@ class Part(BaseModel):
 
     `noun` is what people call the part. `rules` tie values below it together; their key paths begin at it. Of the
     fields in each group of `exactly_one`, which are None where they are left out, one has to be written. A `word`
-    stands for a part that cannot be written in full.
+    stands for a part that cannot be written in full. A root that `has_usual` values has those of a preset where its
+    file says nothing.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
@@ -64,6 +65,7 @@ class Part(BaseModel):
     exactly_one: ClassVar[tuple[tuple[str, ...], ...]] = ()
     rules: ClassVar[tuple[Callable[[Values], Iterator[Finding]], ...]] = ()
     word: ClassVar[str] = ""
+    has_usual: ClassVar[bool] = False
 
     @classmethod
     def from_text(cls, data: Any) -> Self:

@@ -22,13 +22,16 @@ _MOST_GUESSES: Final = 200
 """Different unknown keys that are guessed at; the others are only named, because a guess takes its time."""
 
 
-def diagnose(model: type[_P], data: Mapping[str, Any]) -> tuple[_P | None, tuple[Finding, ...]]:
-    """The validated model, or None and every finding. Quantities in `data` are texts with a unit."""
+def diagnose(model: type[_P], data: Mapping[str, Any], written: Any = None) -> tuple[_P | None, tuple[Finding, ...]]:
+    """The validated model, or None and every finding. Quantities in `data` are texts with a unit.
+
+    `written` is the data without usual values: keys that only those have may have been meant by an unknown one.
+    """
     try:
         return model.from_text(data), ()
     except ValidationError as error:
         entries = error.errors(include_url=False)
-    findings = list(_translated(Spot(part=model), data, entries))
+    findings = list(_translated(Spot(part=model), data, entries, data if written is None else written))
     findings = findings or [_wrong_form(entry["loc"], entry["input"], None) for entry in entries]
     guessed = _with_guessed_tags(model, data)
     if guessed is not None:
@@ -99,7 +102,7 @@ def _without_echoes(findings: list[Finding]) -> list[Finding]:
     return [finding for finding in findings if not is_echo(finding)]
 
 
-def _translated(root: Spot, data: Mapping[str, Any], entries: Iterable[Any]) -> Iterator[Finding]:
+def _translated(root: Spot, data: Mapping[str, Any], entries: Iterable[Any], written: Any) -> Iterator[Finding]:
     """Pydantic's errors in the words of this program."""
     guessed: set[str] = set()
     for entry in entries:
@@ -118,7 +121,7 @@ def _translated(root: Spot, data: Mapping[str, Any], entries: Iterable[Any]) -> 
             yield Finding(path, "is required", "nothing", _how_to_write(str(path[-1]), root.part_at(data, path[:-1])))
         elif kind == "extra_forbidden":
             guessed.add(str(path[-1]))
-            yield UnknownKey(root, data, path).finding(guessing=len(guessed) <= _MOST_GUESSES)
+            yield UnknownKey(root, written, path).finding(guessing=len(guessed) <= _MOST_GUESSES)
         elif kind == "too_short":
             yield from _too_short(path, len(entry["input"]), context["min_length"], spot)
         else:

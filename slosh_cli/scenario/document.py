@@ -26,10 +26,12 @@ class Document:
     """Mappings, lists and scalars with their `origins` by path, the `problems` and `overrides` so far.
 
     `original` is a copy of the data before any override. Parts at `unfilled` paths name a preset that there is not.
+    `written` is a copy of the data without usual values, where there are such.
     """
 
     data: Any = None
     original: Any = None
+    written: Any = None
     origins: dict[Path, Origin] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     overrides: list[str] = field(default_factory=list)

@@ -92,7 +92,7 @@ class Root(Part):
         """The model of a document, or a ScenarioError with all its problems; `file` is what these name."""
         found = None
         if isinstance(document.data, dict):
-            found, findings = diagnose(cls, document.data)
+            found, findings = diagnose(cls, document.data, document.written)
             for finding in findings:
                 document.add(finding)
         if found is None or document.problems:

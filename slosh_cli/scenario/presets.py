@@ -1,4 +1,7 @@
-"""Presets: named values with sources for parts of a scenario, taken by `use: NAME` before the schema sees the file."""
+"""Presets: named values with sources for parts of a scenario, taken by `use: NAME` before the schema sees the file.
+
+One of them, `DEFAULT`, is taken by itself: a stop has its values where the file says nothing.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +17,14 @@ from typing import Any, Final
 from slosh_cli.errors import Problem, ValueRefused
 from slosh_cli.scenario.base import OWN, USE, Part, Path
 from slosh_cli.scenario.document import Document, Origin
-from slosh_cli.scenario.tree import Spot, value_at
+from slosh_cli.scenario.tree import Spot, spot_of, value_at
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.yaml_text import parse
 
 TAKEN: Final = "presets"
 """The key under which a resolved scenario states what came from presets."""
+DEFAULT: Final = "default"
+"""The preset of what a stop has where its file says nothing."""
 _FOLDER: Final = FilePath(__file__).resolve().parent.parent / "presets"
 
 
@@ -64,8 +69,8 @@ class Preset:
 
 @cache
 def every_preset() -> dict[str, Preset]:
-    """All presets of the program by name: wagons, bogies, tracks, products, brakes."""
-    files = (f"{kind}.yaml" for kind in ("wagons", "bogies", "tracks", "products", "brakes"))
+    """All presets of the program by name: wagons, bogies, tracks, products, brakes, and the defaults."""
+    files = (f"{kind}.yaml" for kind in ("wagons", "bogies", "tracks", "products", "brakes", "defaults"))
     read = (parse((_FOLDER / file).read_text(encoding="utf-8"), file).data for file in files)
     return {name: _preset(name, data) for file in read for name, data in file.items()}
 
@@ -80,15 +85,25 @@ def find_preset(name: object, kind: str = "") -> Preset:
     raise ValueRefused(f"must be the name of a {kind or 'preset'}{' preset' if kind else ''}", plain(name), fix)
 
 
+def is_usual(model: type[Part], name: str) -> bool:
+    """Whether the preset `DEFAULT` has all that the part `name` of a root must have, so that it may be left out."""
+    part, told = spot_of(model, name).part, {inner[0] for inner in find_preset(DEFAULT).below((name,))}
+    return part is not None and all(key in told for key, entry in part.model_fields.items() if entry.is_required())
+
+
 def expand(document: Document, model: type[Part]) -> None:
     """Put the values of presets in place of every `use` of a document, and of its data before overrides.
 
     What stands beside `use` holds, key by key. A `use` that an override gives holds against the values of the file and
     not against other overrides. Values keep the line of their `use` as their origin, with the name of the preset.
+    What a `model` with usual values is left without it then has of the preset `DEFAULT`; `written` stays without.
     """
     if document.original is not None:
-        _expand(Document(document.original, origins={(): Origin()}), model)
+        original = Document(document.original, origins={(): Origin()})
+        _expand(original, model)
+        _fill(original, model)
     taken = _expand(document, model)
+    taken |= _fill(document, model)
     if not isinstance(document.data, dict) or not (taken or TAKEN in document.data):
         return
     told = document.data.pop(TAKEN, None)
@@ -148,12 +163,35 @@ def _expand(document: Document, model: type[Part]) -> dict[str, str]:
                 document.unfilled.append(path)
                 document.problems.append(Problem(origin.line, key, error.rule, error.given, error.fix, origin.override))
                 continue
-            for inner, value in values.items():
-                place, given = (*path, *inner), Origin(origin.line, origin.override, preset.name)
-                if _take(document, model, place, deepcopy(value), given):
-                    part = Spot(part=model).part_at(document.data, place[:-1])
-                    field = part.field_of(str(place[-1])) if part else place[-1]
-                    taken[".".join(map(str, (*place[:-1], field)))] = preset.name
+            given = Origin(origin.line, origin.override, preset.name)
+            taken |= _taken(document, model, {(*path, *inner): value for inner, value in values.items()}, given)
+    return taken
+
+
+def _fill(document: Document, model: type[Part]) -> dict[str, str]:
+    """Give a part its usual values where it has none; the key paths of those that are taken.
+
+    A part that has other keys, which nobody can know, has to be there.
+    """
+    data = document.data
+    if not model.has_usual or not isinstance(data, dict):
+        return {}
+    usual = find_preset(DEFAULT)
+    leaves = {
+        path: leaf.value for path, leaf in usual.leaves.items() if path[0] in data or is_usual(model, str(path[0]))
+    }
+    document.written = deepcopy(data)
+    return _taken(document, model, leaves, Origin(preset=DEFAULT))
+
+
+def _taken(document: Document, model: type[Part], values: Mapping[Path, Any], origin: Origin) -> dict[str, str]:
+    """Put values of a preset at their places; which of them hold, by the key path of the field."""
+    taken: dict[str, str] = {}
+    for place, value in values.items():
+        if _take(document, model, place, deepcopy(value), origin):
+            part = Spot(part=model).part_at(document.data, place[:-1])
+            field = part.field_of(str(place[-1])) if part else place[-1]
+            taken[".".join(map(str, (*place[:-1], field)))] = origin.preset
     return taken
 
 

@@ -1,16 +1,18 @@
 """A whole scenario: a tank wagon on a track and its stop, or a tank alone."""
 
 from collections.abc import Iterable
+from functools import reduce
 from pathlib import Path
 from typing import Any, Self
 
 from pydantic import Field, model_validator
 
 from slosh_cli.scenario.amounts import tare_of
-from slosh_cli.scenario.base import USE
+from slosh_cli.scenario.base import USE, Part
 from slosh_cli.scenario.document import Document
+from slosh_cli.scenario.leaves import Quantity
 from slosh_cli.scenario.loader import Root, read
-from slosh_cli.scenario.presets import expand
+from slosh_cli.scenario.presets import DEFAULT, expand, find_preset, is_usual
 from slosh_cli.scenario.rules import Finding
 from slosh_cli.scenario.schema_brake import Braking
 from slosh_cli.scenario.schema_limits import Limits
@@ -20,7 +22,8 @@ from slosh_cli.scenario.schema_rules import ALONE_RULES, STOP_RULES
 from slosh_cli.scenario.schema_run import Contact, Output, Solver, Track
 from slosh_cli.scenario.schema_tank import Tank
 from slosh_cli.scenario.schema_wagon import Wagon
-from slosh_cli.scenario.tree import value_at
+from slosh_cli.scenario.tree import spot_of, value_at
+from slosh_cli.scenario.units import shown
 from slosh_cli.scenario.yaml_text import parse
 
 
@@ -46,6 +49,7 @@ class Scenario(Root):
     """One stop of a tank wagon. Values are of the whole wagon; every quantity is SI inside."""
 
     rules = STOP_RULES
+    has_usual = True
 
     wagon: Wagon = Field(description="The wagon without its load.")
     tank: Tank = Field(description="The tank and what is in it.")
@@ -65,6 +69,32 @@ class Scenario(Root):
         tank = with_own_coefficients(self.tank, document, before.tank if before else None, file)
         return self.model_copy(update={"tank": tank})
 
+    @property
+    def defaults(self) -> dict[str, str]:
+        """Values that the file leaves to the program, as texts by their key paths; `computed` where there is no one."""
+        taken = [key for key, name in self.presets.items() if name == DEFAULT]
+        found = {key: self._text(tuple(key.split("."))) for key in taken}
+        for above in (("track", "domain"), ("solver",)):
+            part: Any = reduce(getattr, above, self)
+            usual = {name: entry.default for name, entry in type(part).model_fields.items()}
+            same = [name for name, value in usual.items() if getattr(part, name) == value]
+            found |= {".".join((*above, name)): self._text((*above, name)) for name in same}
+        return {key: text for key, text in found.items() if text}
+
+    def _text(self, path: tuple[str, ...]) -> str:
+        """The value at a key path as a file may have it; empty where there is no such key."""
+        part: Any = self
+        for step in path[:-1]:
+            part = getattr(part, step, None)
+        if not isinstance(part, Part) or path[-1] not in type(part).model_fields:
+            return ""
+        value, spot = getattr(part, path[-1]), spot_of(type(part), path[-1])
+        if isinstance(value, Part):
+            known = spot.short.known if spot.short else {}
+            return next((word for word, one in known.items() if one == value), "")
+        unit = f" {spot.leaf.unit}" if isinstance(spot.leaf, Quantity) else ""
+        return "computed" if value is None else f"{shown(value)}{unit}"
+
 
 def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     """Read the scenario of a stop, from a file or, by its name where no such file exists, from the packaged ones.
@@ -74,7 +104,7 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     """
     document = _with_files_beside(read(path, overrides, _kind), Path(path))
     if _kind(document.data) is TankScenario:
-        rule = f"must describe a stop, with {', '.join(_stop_parts())} beside the tank"
+        rule = f"must describe a stop, with {', '.join(_needed())} beside the tank"
         fix = "add them, or use the file where a tank alone will do"
         document.add(Finding((), rule, "a tank alone", fix))
         TankScenario.of(document, str(path))
@@ -123,17 +153,41 @@ def parse_scenario(text: str, name: str = "scenario") -> Scenario:
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema of a scenario file, of a stop or of a tank alone, for editors. Quantities are texts with a unit."""
-    schema, parts = Scenario.editor_schema(), _stop_parts()
+    schema, parts = _with_defaults(Scenario.editor_schema()), _stop_parts()
     alone = [name for name in Scenario.model_fields if name not in TankScenario.model_fields and name not in parts]
     return schema | {
         "required": [name for name in schema["required"] if name not in parts],
         "if": {"anyOf": [{"required": [part]} for part in parts]},
         "then": {
-            "required": list(parts),
+            "required": _needed(),
             "properties": {"tank": {"anyOf": [{"required": [key]} for key in ("bottom_height", USE)]}},
         },
         "else": {"properties": dict.fromkeys(alone, False) | {"tank": {"properties": {"gross_mass": False}}}},
     }
+
+
+def _with_defaults(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema with the values that a stop has where its file says nothing; their keys may be left out."""
+    definitions = schema["$defs"] | {Scenario.__name__: schema}
+    for path, leaf in find_preset(DEFAULT).leaves.items():
+        parts: list[Any] = [Scenario]
+        for step in path[:-1]:
+            parts.append(spot_of(parts[-1], str(step)).part)
+        given = True
+        for part, step in reversed(list(zip(parts, path, strict=True))):
+            own = definitions[part.__name__]
+            own["required"] = [name for name in own.get("required", ()) if name != step or not given]
+            given = not own["required"]
+            if not given:
+                break
+            del own["required"]
+        definitions[parts[-1].__name__]["properties"][path[-1]]["default"] = leaf.value
+    return schema
+
+
+def _needed() -> list[str]:
+    """The keys that a stop must have beside its tank."""
+    return [name for name in _stop_parts() if not is_usual(Scenario, name)]
 
 
 def _stop_parts() -> tuple[str, ...]:

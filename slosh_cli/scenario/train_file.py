@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -133,11 +134,10 @@ def _whole(file: TrainFile, document: Document, path: Path, found: Sequence[Scen
 
 def is_train_file(path: Path) -> bool:
     """Whether the file describes a train; False where it cannot be read at all."""
-    try:
+    with suppress(ScenarioError):
         data = load_document(path).data
-    except ScenarioError:
-        return False
-    return isinstance(data, dict) and "vehicles" in data
+        return isinstance(data, dict) and "vehicles" in data
+    return False
 
 
 def load_train(path: str | Path, overrides: Iterable[str] = ()) -> TrainScenario:
@@ -273,15 +273,17 @@ def _at_its_place(
 def _with_shared(file: TrainFile, document: Document, path: Path, found: Sequence[Scenario]) -> Iterator[Scenario]:
     """The vehicles with what the train says for all of them, or else the first one; each kind is checked once."""
     settings = {key: getattr(found[0], key) for key in SHARED} | file.settings
+    lent = {key: name for key, name in found[0].presets.items() if key.split(".")[0] in {*SHARED} - {*file.settings}}
     kinds: dict[int, Scenario] = {}
     for number, scenario in enumerate(found, 1):
         if id(scenario) not in kinds:
             own = {} if file.track is not None else {TRACK_MODEL: scenario.track.model}
             try:
-                kinds[id(scenario)] = scenario.with_(settings | own)
+                made = scenario.with_(settings | own)
             except ScenarioError as error:
                 told = [replace(problem, line=document.origin(("braking",)).line) for problem in error.problems]
                 raise ScenarioError(f"{path}, vehicle {number} ({scenario.name})", told) from None
+            kinds[id(scenario)] = made.model_copy(update={"presets": made.presets | lent}) if lent else made
         yield kinds[id(scenario)]
 
 

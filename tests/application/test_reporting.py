@@ -3,6 +3,7 @@
 import html
 import json
 import re
+import shutil
 from pathlib import Path
 
 import h5py
@@ -49,6 +50,19 @@ def test_what_a_scenario_says_stays_text(run_file: Path) -> None:
     assert html.escape(EVIL) in page
     assert len(re.findall(r"<script", page)) == 2
     assert not re.search(r"""(src|href)=["']?(https?:)?//""", page)
+
+
+def test_inputs_tell_their_standing(run_file: Path, tmp_path: Path) -> None:
+    file = Path(shutil.copy(run_file, tmp_path))
+    with h5py.File(file, "r+") as held:
+        text = held["scenario"].asstr()[()]
+        del held["scenario"]
+        held["scenario"] = text + "presets: {contact.adhesion: default, track.rail.youngs_modulus: soft-track}\n"
+    page = write_report(file).read_text(encoding="utf-8")
+    cells = r"<td[^>]*>contact.adhesion.mu0</td>\s*<td[^>]*>0.55</td>\s*<td[^>]*>default</td>"
+    assert re.search(cells, page)
+    assert "preset soft-track" in page
+    assert "preset soft-track" not in write_report(run_file).read_text(encoding="utf-8")
 
 
 def test_the_surface_along_the_tank_ends_at_the_walls(run_file: Path) -> None:

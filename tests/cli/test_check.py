@@ -94,3 +94,49 @@ def test_the_data_sheet_of_a_stop(slosh: Slosh) -> None:
     sheet = told(slosh, PAPER, "tank.fill=0.5")["data_sheet"]
     assert 2 * (sheet["axle_load_front_t"] + sheet["axle_load_rear_t"]) == pytest.approx(sheet["gross_mass_t"])
     assert f"{sheet['tau']:.3f}" in slosh("check", PAPER, *COMPUTED, "--set", "tank.fill=0.5").out
+
+
+def test_defaults_are_told(slosh: Slosh) -> None:
+    text = PAPER.read_text(encoding="utf-8")
+    Path("bare.yaml").write_text(f"{text[: text.index('contact:')]}{text[text.index('braking:') :]}", encoding="utf-8")
+    told = json.loads(slosh("check", "bare.yaml", "--json", *COMPUTED).out)["defaults"]
+    assert told["contact.adhesion"] == "dry"
+    assert told["contact.youngs_modulus"] == "2.1e11 Pa"
+    assert "track.domain.length" not in told
+    assert "track.rail.youngs_modulus" not in told
+    assert "contact: youngs_modulus 2.1e11 Pa, poisson_ratio 0.3" in slosh("check", "bare.yaml", *COMPUTED).out
+    assert "contact: " not in slosh("check", PAPER, *COMPUTED).out
+
+
+def test_default_adhesion_is_warned_of_where_wet_rail_would_lock_wheels(slosh: Slosh) -> None:
+    text = PAPER.read_text(encoding="utf-8")
+    Path("bare.yaml").write_text(f"{text[: text.index('contact:')]}{text[text.index('braking:') :]}", encoding="utf-8")
+    said = "The file says nothing of `contact.adhesion`"
+    options = (*COMPUTED, "--set", "braking.torque=15 kN m")
+    assert said in slosh("check", "bare.yaml", *options).err
+    assert said not in slosh("check", "bare.yaml", *options, "--set", "contact.adhesion=dry").err
+    assert said not in slosh("check", "bare.yaml", *COMPUTED, "--set", "braking.torque=3 kN m").err
+
+
+def test_sensitivity_is_one_json_object_with_files(slosh: Slosh) -> None:
+    rigid = ("--set", "tank.liquid.model=rigid", "--set", "solver.tolerance=1e-3", "--output", "out")
+    outcome = slosh("check", PAPER, "--sensitivity", "--json", *COMPUTED, *rigid)
+    assert outcome.code == ExitCode.DONE, outcome.err
+    found = json.loads(outcome.out)
+    values = {one["key"]: one for one in found["sensitivity"]["values"]}
+    assert values["braking.torque"]["matters"]
+    assert found["sensitivity"]["base"]["status"] == "stopped"
+    assert found["data_sheet"]
+    assert Path(found["files"]["table"]).is_file()
+    assert len(found["files"]["figures"]) == 2
+    told = slosh("check", PAPER, "--sensitivity", *COMPUTED, *rigid).out
+    assert "These do not matter here" in told
+    assert "braking.torque" in told
+
+
+def test_sensitivity_needs_the_stop_of_one_wagon(slosh: Slosh) -> None:
+    outcome = slosh("check", TANK, "--sensitivity")
+    assert outcome.code == ExitCode.BAD_INPUT
+    assert "--sensitivity needs the stop of one wagon" in outcome.err
+    Path("train.yaml").write_text("vehicles: []\n", encoding="utf-8")
+    assert "a train" in slosh("check", "train.yaml", "--sensitivity").err

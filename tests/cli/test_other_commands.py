@@ -226,7 +226,7 @@ def test_presets_are_listed_and_printed_with_their_sources(slosh: Slosh) -> None
     told = slosh("presets", "15-9049").out
     assert "wagon.pivot_spacing: 7.8 m  [published: data sheet of the wagon]" in told
     listed = json.loads(slosh("presets", "--json").out)["presets"]
-    assert {entry["kind"] for entry in listed} == {"wagon", "bogie", "track", "product", "brake"}
+    assert {entry["kind"] for entry in listed} == {"wagon", "bogie", "track", "product", "brake", "default"}
     assert json.loads(slosh("presets", "diesel", "--json").out)["un"] == 1202
     refused = slosh("presets", "dieesl")
     assert (refused.code, "did you mean `diesel`?" in refused.err) == (2, True)

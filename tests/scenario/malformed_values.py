@@ -391,16 +391,16 @@ SHAPES_AND_TYPES = (
     ),
     one(
         "missing mapping",
-        "  rail: {youngs_modulus: 200 GPa, second_moment: 3.06e-5 m^4, mass_per_length: 60 kg/m}\n",
+        "  primary_suspension: {stiffness: 2.6e6 N/m, damping: 1.5e4 N s/m}\n",
         "",
         (
-            32, "track.rail", "is required", "nothing",
-            "write `rail:` with the keys youngs_modulus, second_moment and mass_per_length",
+            4, "wagon.primary_suspension", "is required", "nothing",
+            "write `primary_suspension:` with the keys stiffness and damping",
         ),
     ),
     one(
-        "missing adhesion", "  adhesion: dry\n", "",
-        (38, "contact.adhesion", "is required", "nothing", "such as `adhesion: dry`"),
+        "missing adhesion", "  adhesion: dry\n", "  adhesion:\n",
+        (43, "contact.adhesion", "must be `dry`, `wet`, a coefficient", "nothing", "such as `0.15`"),
     ),
     one("missing version", "format: 1\n", "", (1, "format", "is required", "nothing", "write `format: 1`")),
     one(
@@ -426,7 +426,7 @@ SHAPES_AND_TYPES = (
         "format: 1\nname: alone\n" + BASE[BASE.index("tank:"):BASE.index("track:")],
         (
             Expected(
-                1, "", "must describe a stop, with wagon, track, contact, braking beside the tank",
+                1, "", "must describe a stop, with wagon, braking beside the tank",
                 "a tank alone", "add them",
             ),
         ),

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,9 @@ from slosh_cli.errors import ScenarioError, ValueRefused
 from slosh_cli.scenario import Scenario, json_schema, load_scenario, parse_scenario, scenario_to_yaml
 from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.composed import composed
-from slosh_cli.scenario.presets import every_preset, find_preset
+from slosh_cli.scenario.document import Document, Origin
+from slosh_cli.scenario.presets import every_preset, expand, find_preset
+from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.yaml_text import parse
 from slosh_cli.study.key import stop_key
 
@@ -166,6 +169,64 @@ def test_density_follows_the_petroleum_tables_and_is_refused_outside() -> None:
             assert f"{dict(preset.density_at)[15.0]} kg/m^3" == own
 
 
+_LEFT_OUT = "".join(line for line in _TEXT.splitlines(True) if not line.startswith(("track", "contact")))
+
+
+def test_what_a_file_leaves_out_has_its_default_and_says_so() -> None:
+    scenario, full = parse_scenario(_LEFT_OUT), parse_scenario(_TEXT)
+    assert (scenario.track, scenario.contact) == (full.track, full.contact)
+    defaults = {key for key, name in scenario.presets.items() if name == "default"}
+    assert {key.partition(".")[0] for key in defaults} == {"track", "contact"}
+    assert "contact.adhesion: default" in scenario_to_yaml(scenario)
+    assert "default" not in full.presets.values()
+    assert parse_scenario(scenario_to_yaml(scenario)) == scenario
+    assert stop_key(scenario.model_copy(update={"presets": {}})) == stop_key(full)
+
+
+def test_defaults_are_taken_key_by_key_and_give_way_to_overrides(tmp_path: Path) -> None:
+    text = _LEFT_OUT + "contact: {kalker_c11: 3.9}\n"
+    scenario = load_scenario(_file(tmp_path, text), ["track.foundation.stiffness=2e7 N/m^2"])
+    assert (scenario.contact.kalker_c11, scenario.contact.poisson_ratio) == (3.9, 0.3)
+    assert (scenario.track.foundation.stiffness, scenario.track.foundation.damping) == (2e7, 3.78e4)
+    assert not {"contact.kalker_c11", "track.foundation.stiffness"} & set(scenario.presets)
+    changed = scenario.with_({"contact.poisson_ratio": 0.25})
+    assert "contact.poisson_ratio" not in changed.presets
+    assert changed.presets["track.foundation.damping"] == "default"
+
+
+def test_a_preset_holds_against_defaults_and_what_matters_is_required(tmp_path: Path) -> None:
+    assert parse_scenario(_LEFT_OUT + "track: {use: soft-track}\n").track.foundation.stiffness == 1.5e7
+    told = _refusal(tmp_path, text=_LEFT_OUT.replace("wagon: {use: zacns-like,", "wagon: {"))
+    assert "wagon.pivot_spacing: is required" in told
+    assert "running_resistance" not in told
+    told = _refusal(tmp_path, text="".join(line for line in _LEFT_OUT.splitlines(True) if "wagon:" not in line))
+    assert "wagon: is required" in told
+
+
+def test_given_coefficients_belong_to_their_tank_where_the_track_is_left_out(tmp_path: Path) -> None:
+    text = scenario_to_yaml(load_scenario("paper-80-liquid"))
+    bare = text[: text.index("track:")] + text[text.index("contact:") :]
+    assert load_scenario(_file(tmp_path, bare), ["braking.torque=4 kN m"]).tank.coefficients != "computed"
+    assert "the given slosh coefficients belong to the unchanged tank" in _refusal(tmp_path, "tank.fill=0.9", text=bare)
+    light = re.sub(r"  running_resistance:\n(?:    .*\n)+", "", bare).replace("  fill: 0.5", "  gross_mass: 80 t")
+    told = _refusal(tmp_path, "wagon.car_body.mass=15 t", text=light)
+    assert "the given slosh coefficients belong to the unchanged tank" in told
+
+
+def test_a_misspelt_key_with_a_default_is_guessed(tmp_path: Path) -> None:
+    told = _refusal(tmp_path, text=_TEXT.replace("kalker_c11", "kalker_c1"))
+    assert told == "mine.yaml:9: contact.kalker_c1: is not a key of `contact`; given `kalker_c1`; write `kalker_c11`"
+
+
+def test_a_train_says_all_of_a_part_or_nothing() -> None:
+    track = parse(_TEXT, "mine").data["track"]
+    document = Document({"track": track, "contact": {"kalker_c11": 4.12}}, origins={(): Origin()})
+    expand(document, TrainFile)
+    assert document.data["contact"] == {"kalker_c11": 4.12}
+    with pytest.raises(ScenarioError, match=r"contact\.adhesion: is required.*such as `adhesion: dry`"):
+        TrainFile.of(document, "train")
+
+
 def test_a_mass_that_does_not_fit_is_refused() -> None:
     with pytest.raises(ScenarioError, match=r"tank\.gross_mass: .*the tank holds"):
         composed("own", _CHOSEN | {"gross": "120 t"})
@@ -175,8 +236,11 @@ def test_the_editor_schema_allows_use() -> None:
     jsonschema = pytest.importorskip("jsonschema")
     schema = json.loads(json.dumps(json_schema()))
     jsonschema.validate(parse(_TEXT, "mine").data, schema)
+    jsonschema.validate(parse(_LEFT_OUT, "mine").data, schema)
+    jsonschema.validate(parse(_LEFT_OUT + "track: {rail: {mass_per_length: 54 kg/m}}\n", "mine").data, schema)
+    assert schema["$defs"]["Contact"]["properties"]["adhesion"]["default"] == "dry"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(parse(_TEXT.replace("use: uic60-ballast", "use: 5"), "mine").data, schema)
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(parse(_TEXT.replace("use: uic60-ballast", ""), "mine").data, schema)
+        jsonschema.validate(parse(_TEXT.replace("use: zacns-like, car_body", "car_body"), "mine").data, schema)
     assert "presets" in Scenario.model_fields

@@ -130,7 +130,7 @@ def test_json_schema_names_units_and_its_examples_are_texts() -> None:
         "default" not in entry and "Default: " in entry["description"] for entry in domain["properties"].values()
     )
     assert schema["required"] == ["format", "name", "tank"]
-    assert schema["then"]["required"] == ["wagon", "track", "contact", "braking"]
+    assert schema["then"]["required"] == ["wagon", "braking"]
     height = [{"required": ["bottom_height"]}, {"required": ["use"]}]
     assert schema["then"]["properties"]["tank"]["anyOf"] == height
     cylinder = schema["$defs"]["HorizontalCylinder"]

@@ -52,6 +52,22 @@ def test_vehicles_are_those_of_their_files_with_the_train_s_stop(train) -> None:
     assert found[0].braking.application != found[3].braking.application
 
 
+def test_what_the_first_vehicle_leaves_out_is_a_default_of_all(train, tmp_path: Path) -> None:
+    train()
+    text = (tmp_path / "own.yaml").read_text(encoding="utf-8")
+    bare = text[: text.index("contact:")] + text[text.index("braking:") :]
+    (tmp_path / "bare.yaml").write_text(bare, encoding="utf-8")
+    replaced = ("paper-80-solid, set: {tank.fill: 0.9}", "bare.yaml")
+    found = train(replaced=replaced).vehicles
+    assert {one.presets.get("contact.adhesion") for one in found} == {"default"}
+    assert found[3].defaults["contact.kalker_c11"] == "4.12"
+    assert found[3].contact == found[0].contact
+    assert not any(one.presets for one in train().vehicles)
+    own = train("contact={youngs_modulus: 200 GPa, poisson_ratio: 0.3, rail_crown_radius: 0.3 m, kalker_c11: 4, "
+                "adhesion: wet}", replaced=replaced).vehicles  # fmt: skip
+    assert not any(one.presets for one in own)
+
+
 def test_overrides_reach_every_vehicle_one_of_them_or_the_train(train) -> None:
     computed = ("all.tank.coefficients=computed", "all.tank.fill=0.4")
     found = train(*computed, "vehicles.3.braking.torque=3 kN m", "coupling=automatic", "braking.onset=1 s")
