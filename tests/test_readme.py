@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from slosh_cli.scenario import parse_scenario
 from slosh_cli.version import install_command
 
 ROOT = Path(__file__).parents[1]
@@ -138,6 +139,13 @@ def test_every_command_works(folder: Path, installed: Path, command: str) -> Non
     outcome = run(folder, installed, "sh", "-c", command)
     assert outcome.returncode == 0, outcome.stderr
     assert "Traceback" not in outcome.stderr
+
+
+def test_the_presets_of_the_page_make_a_scenario() -> None:
+    (presets,) = [text for kind, text in BLOCKS if kind == "yaml" and "use:" in text]
+    contact = "{youngs_modulus: 210 GPa, poisson_ratio: 0.3, rail_crown_radius: 0.3 m, kalker_c11: 4.12, adhesion: dry}"
+    scenario = parse_scenario(f"format: 1\nname: mine\n{presets}contact: {contact}\n")
+    assert scenario.wagon.car_body.mass == 14e3
 
 
 def test_the_python_example_works_outside_a_checkout(installed: Path, tmp_path: Path) -> None:

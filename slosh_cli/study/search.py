@@ -98,7 +98,10 @@ class Sampled:
 
 
 def passages(sampled: Sampled, target: float) -> list[Passage]:
-    """Where the answer passes `target`, between the stops that there are, from low to high."""
+    """Where the answer passes `target`, between the stops that there are, from low to high.
+
+    An answer that is `target` at every stop passes it nowhere: no wheel locks from one end to the other.
+    """
     answered = [one for one in sampled.samples if one.value is not None]
     order = {one.x: number for number, one in enumerate(sampled.samples)}
     found = []
@@ -107,7 +110,8 @@ def passages(sampled: Sampled, target: float) -> list[Passage]:
             beside = order[second.x] - order[first.x] == 1
             found.append(_passage(first, second, target, "crossing" if beside else "gap"))
     exact = next((one for one in answered if one.value == target), None)
-    return found or ([Passage("crossing", exact.x, exact, exact, True)] if exact else [])
+    touched = exact is not None and any(one.value != target for one in answered)
+    return found or ([Passage("crossing", exact.x, exact, exact, True)] if exact and touched else [])
 
 
 def refined(sampled: Sampled, passage: Passage, target: float, tolerance: float) -> Passage:

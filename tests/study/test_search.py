@@ -53,6 +53,13 @@ def test_the_end_of_a_plateau_is_found() -> None:
     assert found.x == pytest.approx(4.2, rel=1e-4)
 
 
+def test_an_answer_that_never_leaves_the_value_does_not_pass_it() -> None:
+    """No wheel locks at any stop: there is no first lock at the low end."""
+    assert passages(sampled(lambda x: 0.0), 0.0) == []
+    (touched,) = passages(sampled(lambda x: x), 10.0)
+    assert touched.x == 10.0
+
+
 def test_several_crossings_are_told_and_stops_without_an_answer_are_no_crossing() -> None:
     assert len(passages(sampled(math.sin), 0.5)) == 4
     gap = first_of(lambda x: None if 3.0 < x < 5.0 else x, 4.0)
