@@ -1,4 +1,4 @@
-"""What the README tells people to type works in an empty folder with the built wheel, in the README's own order."""
+"""What README and reference tell people to type works in an empty folder with the built wheel, in their own order."""
 
 import os
 import re
@@ -13,11 +13,13 @@ from pathlib import Path
 
 import pytest
 
+from slosh_cli.scenario import parse_scenario
 from slosh_cli.version import install_command
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+PAGES = ("README.md", "docs/scenario.md", "docs/runs.md", "docs/studies.md", "docs/tank.md", "docs/which-liquid.md")
+TEXTS = {page: (ROOT / page).read_text(encoding="utf-8") for page in PAGES}
+BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```", "\n".join(TEXTS.values()), re.MULTILINE | re.DOTALL)
 SHELL = [text for kind, text in BLOCKS if kind in ("", "sh")]
 LINES = [line for text in SHELL for line in text.splitlines()]
 COMMANDS = [line.partition(" #")[0].strip() for line in LINES if line.startswith("slosh ")]
@@ -72,7 +74,7 @@ def free_port() -> str:
 
 
 def empty_folder(folder: Path) -> Path:
-    """A folder with nothing in it but the files that the README speaks of as the reader's own."""
+    """A folder with nothing in it but the files that the pages speak of as the reader's own."""
     folder.mkdir(exist_ok=True)
     (folder / "brake.csv").write_text("time_s,deceleration_m_s2\n0,0\n2,1.5\n")
     (folder / "sway.csv").write_text("time_s,displacement_m\n0,0\n1,0.1\n2,0\n3,-0.1\n4,0\n")
@@ -86,7 +88,22 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return empty_folder(tmp_path_factory.mktemp("readme"))
 
 
-def test_the_readme_has_the_commands_of_every_chapter() -> None:
+def test_the_readme_is_a_front_door() -> None:
+    assert len(TEXTS["README.md"].splitlines()) <= 150
+    links = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")}
+    assert set(re.findall(r"\]\((docs/[\w.-]+\.md)\)", TEXTS["README.md"].replace("\n", " "))) >= links - {
+        "docs/validation.md"
+    }
+
+
+def test_every_link_leads_to_a_file() -> None:
+    for page in sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")]):
+        for link in re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text(encoding="utf-8")):
+            made = link == "validation.md"  # when the documentation is built
+            assert made or (page.parent / link).is_file(), (page.name, link)
+
+
+def test_the_pages_have_the_commands_of_every_chapter() -> None:
     assert {shlex.split(command)[1] for command in COMMANDS} >= {
         "init", "check", "run", "plot", "sweep", "tank", "validate",
     }  # fmt: skip
@@ -122,6 +139,13 @@ def test_every_command_works(folder: Path, installed: Path, command: str) -> Non
     outcome = run(folder, installed, "sh", "-c", command)
     assert outcome.returncode == 0, outcome.stderr
     assert "Traceback" not in outcome.stderr
+
+
+def test_the_presets_of_the_page_make_a_scenario() -> None:
+    (presets,) = [text for kind, text in BLOCKS if kind == "yaml" and "use:" in text]
+    contact = "{youngs_modulus: 210 GPa, poisson_ratio: 0.3, rail_crown_radius: 0.3 m, kalker_c11: 4.12, adhesion: dry}"
+    scenario = parse_scenario(f"format: 1\nname: mine\n{presets}contact: {contact}\n")
+    assert scenario.wagon.car_body.mass == 14e3
 
 
 def test_the_python_example_works_outside_a_checkout(installed: Path, tmp_path: Path) -> None:

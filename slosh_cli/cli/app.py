@@ -19,7 +19,10 @@ _COMMANDS: Final = (
 
 _EPILOG: Final = (
     "Exit codes: 0 done, 1 a validation fell short, 2 the input is wrong, 3 a run ended without an answer, "
-    "130 interrupted."
+    "130 interrupted.\n\n"
+    "Documentation: docs/tutorial.md (your wagon in 20 minutes), docs/scenario.md (keys), docs/which-liquid.md, "
+    "docs/runs.md, docs/studies.md, docs/find.md, docs/tank.md, docs/python.md, docs/answers.md and docs/theory.md in "
+    "the source tree; `make docs` builds them."
 )
 
 

@@ -1,9 +1,11 @@
 """Every command and every option says what it is for, and `--help` is quick."""
 
+import re
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -51,6 +53,12 @@ def test_the_first_line_of_a_help_fits_the_list_of_commands(slosh: Slosh, path: 
     first = COMMANDS[path].help.splitlines()[0]
     assert len(first) <= 68
     assert first.endswith(".")
+
+
+def test_the_help_names_pages_that_exist(slosh: Slosh) -> None:
+    told = re.findall(r"docs/[\w-]+\.md", " ".join(slosh("--help").out.split()))
+    assert "docs/tutorial.md" in told
+    assert all((Path(__file__).parents[2] / page).is_file() for page in told)
 
 
 def test_without_a_command_slosh_shows_its_help(slosh: Slosh) -> None:
