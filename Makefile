@@ -27,8 +27,9 @@ $(READY): pyproject.toml requirements.lock
 run: $(READY)
 	$(BIN)/slosh run scenarios/paper_80.yaml
 
+# a file of tests stays in one process: what its tests share is computed once
 test: $(READY)
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" -n auto --dist loadfile
 
 test-all: $(READY)
 	$(BIN)/python -m pytest
