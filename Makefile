@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference studies clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -15,6 +15,7 @@ help:
 	@echo "make bench-batch  ten thousand stops, make bench-docs: put the last results into docs/speed.md"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
+	@echo "make pages     the pages of the documentation that are made from the code, after a change of it"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
@@ -69,6 +70,10 @@ $(DOCS_READY): $(READY)
 
 docs: $(DOCS_READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build -f .mkdocs.yml
+
+pages: $(READY)
+	$(BIN)/python docs/answers.py
+	$(BIN)/python docs/reference.py
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code

@@ -1,4 +1,4 @@
-"""The command tree. A new command NAME is a word in _COMMANDS and a module NAME here with a function NAME_command.
+"""The command tree. A new command NAME is a key of _COMMANDS and a module NAME here with a function NAME_command.
 
 What has commands of its own is a `typer.Typer` instead of a function.
 """
@@ -11,18 +11,18 @@ import typer
 from slosh_cli.cli.output import say
 from slosh_cli.version import __version__
 
-_COMMANDS: Final = (
-    "init", "presets", "check", "run", "sweep", "find", "optimum", "compare",
-    "tank", "plot", "report", "animate", "schema", "validate",
-)  # fmt: skip
-"""In the order of the help."""
+_COMMANDS: Final = {
+    "init": "tutorial", "presets": "presets", "check": "scenario", "run": "runs", "sweep": "studies", "find": "find",
+    "optimum": "find", "compare": "which-liquid", "tank": "tank", "plot": "runs", "report": "tutorial",
+    "animate": "runs", "schema": "keys", "validate": "theory",
+}  # fmt: skip
+"""In the order of the help, each with the page of the documentation that shows it."""
 
 _EPILOG: Final = (
     "Exit codes: 0 done, 1 a validation fell short, 2 the input is wrong, 3 a run ended without an answer, "
     "130 interrupted.\n\n"
-    "Documentation: docs/tutorial.md (your wagon in 20 minutes), docs/scenario.md (keys), docs/which-liquid.md, "
-    "docs/runs.md, docs/studies.md, docs/find.md, docs/tank.md, docs/python.md, docs/answers.md and docs/theory.md in "
-    "the source tree; `make docs` builds them."
+    "Documentation in the source tree: docs/tutorial.md (your wagon in 20 minutes), docs/index.md (all pages), "
+    "docs/keys.md, docs/commands.md and docs/answers.md (every key, command and answer); `make docs` builds them."
 )
 
 
@@ -39,10 +39,13 @@ def tree(word: str = "") -> typer.Typer:
     app.callback(invoke_without_command=True)(_slosh)
     for command in (word,) if word in _COMMANDS else _COMMANDS:
         found = getattr(import_module(f"slosh_cli.cli.{command}"), f"{command}_command")
+        page = f"Documentation: docs/{_COMMANDS[command]}.md in the source tree."
         if isinstance(found, typer.Typer):
-            app.add_typer(found, name=command)
+            for inner in found.registered_commands:
+                inner.epilog = page
+            app.add_typer(found, name=command, epilog=page)
         else:
-            app.command(command)(found)
+            app.command(command, epilog=page)(found)
     return app
 
 

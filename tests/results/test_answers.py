@@ -228,4 +228,4 @@ def test_the_page_of_answers_is_made_from_their_table() -> None:
     assert spec.loader is not None
     made = module_from_spec(spec)
     spec.loader.exec_module(made)
-    assert (DOCS / "answers.md").read_text(encoding="utf-8") == made.page(), "python docs/answers.py"
+    assert (DOCS / "answers.md").read_text(encoding="utf-8") == made.page(), "make pages"
