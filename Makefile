@@ -2,10 +2,13 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# nothing that is not in a lock, nothing whose hash is another, no script of a package while it installs
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+LOCKED := $(PIP) install --require-hashes --only-binary :all:
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -17,12 +20,14 @@ help:
 	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make pages     the pages of the documentation that are made from the code, after a change of it"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
+	@echo "make lock      the lock files from pyproject.toml (UPGRADE=--upgrade: newer versions too)"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
 	$(PYTHON) -c 'import sys; sys.exit("slosh needs Python 3.11 or newer; call make PYTHON=python3.11") if sys.version_info < (3, 11) else None'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[dev]'
+	$(LOCKED) -r requirements.lock
+	$(PIP) install --no-deps --no-build-isolation -e .
 	touch $(READY)
 
 run: $(READY)
@@ -64,8 +69,8 @@ format: $(READY)
 	$(BIN)/ruff check --fix
 
 # the tools are fetched once; the pages themselves are built without a network
-$(DOCS_READY): $(READY)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[docs]'
+$(DOCS_READY): $(READY) .ci/docs.lock
+	$(LOCKED) -r .ci/docs.lock
 	touch $(DOCS_READY)
 
 docs: $(DOCS_READY)
@@ -74,6 +79,17 @@ docs: $(DOCS_READY)
 pages: $(READY)
 	$(BIN)/python docs/answers.py
 	$(BIN)/python docs/reference.py
+
+# the locks of all environments with the hashes of their packages; versions stay, but for `make lock UPGRADE=--upgrade`
+UPGRADE ?=
+COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --generate-hashes --no-annotate --universal $(UPGRADE) \
+  --custom-compile-command "make lock"
+
+lock: $(READY)
+	$(COMPILE) --python-version 3.11 --extra dev -o requirements.lock
+	$(COMPILE) --python-version 3.11.5 --extra docs -c requirements.lock -o .ci/docs.lock
+	$(COMPILE) --python-version 3.11 --extra validation -c requirements.lock -o .ci/validation.lock
+	$(COMPILE) --python-version 3.11 --resolution lowest-direct -o .ci/oldest.lock
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code

@@ -41,6 +41,7 @@ _CONNECT_SECONDS: Final = 10.0
 _POLL_SECONDS: Final = 0.3
 _COUNT_SECONDS: Final = 5.0
 """How often the workers are counted: some may come later."""
+_CERTIFICATES: Final = "name them under distributed.comm.tls in Dask's configuration (docs/studies.md, On a cluster)"
 _TALKERS: Final = ("distributed", "tornado", "asyncio")
 """Who logs a lost connection, by a traceback of whichever part noticed first."""
 
@@ -84,6 +85,8 @@ class Cluster:
             )
         except (OSError, ValueError, TimeoutError) as error:
             raise ClusterError(f"no Dask scheduler answers at {address}: {error}", "--cluster") from None
+        except TypeError:  # what Dask says of an address that needs certificates where its configuration has none
+            raise ClusterError(f"{address} needs certificates: {_CERTIFICATES}", "--cluster") from None
         self._batches: dict[Any, _Batch] = {}
         self._done: queue.SimpleQueue[_Future] = queue.SimpleQueue()
         self._seconds: deque[float] = deque(maxlen=64)

@@ -14,7 +14,7 @@ from slosh_cli.scenario import Scenario
 from slosh_cli.tank.coefficients import slosh_modes
 from slosh_cli.validation.exact.exudyn_wagon import exudyn_stop
 
-LEFT_OUT = "(c) left out: exudyn is not installed; python -m pip install -c requirements.lock -e '.[validation]'"
+LEFT_OUT = "(c) left out: exudyn is not installed; python -m pip install --require-hashes -r .ci/validation.lock"
 LONG_ENOUGH = 40.0
 """Seconds after which the wagon stands in any case."""
 

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import logging
+import os
 import shutil
 import signal
 import subprocess
@@ -27,18 +28,22 @@ JOURNAL = "outputs/cheap/journal.sqlite"
 needs_dask = pytest.mark.skipif(shutil.which("dask", path=str(Path(sys.executable).parent)) is None, reason="no Dask")
 
 
+def address_in(file: Path) -> str:
+    """The address that a scheduler writes into its file once it is there."""
+    deadline = time.monotonic() + 60.0
+    while not file.exists() or not file.read_text().strip().endswith("}"):
+        assert time.monotonic() < deadline, "no scheduler"
+        time.sleep(0.02)
+    return str(json.loads(file.read_text())["address"])
+
+
 class Processes:
     """A scheduler and two workers, each a process that can be killed."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self.scheduler = self._start("scheduler", "--scheduler-file", "scheduler.json", "--port", "0")
-        file = folder / "scheduler.json"
-        deadline = time.monotonic() + 60.0
-        while not file.exists() or not file.read_text().strip().endswith("}"):
-            assert time.monotonic() < deadline, "no scheduler"
-            time.sleep(0.02)
-        self.address = str(json.loads(file.read_text())["address"])
+        self.address = address_in(folder / "scheduler.json")
         self.workers: list[subprocess.Popen[bytes]] = []
         self.complete()
 
@@ -177,6 +182,44 @@ def test_an_address_where_nobody_answers_is_a_clear_error(tmp_path: Path, monkey
         Cluster("tcp://127.0.0.1:1")
     with pytest.raises(ClusterError, match="no Dask scheduler answers at nonsense:"):
         Cluster("nonsense:")
+
+
+NO_CERTIFICATES = {f"DASK_DISTRIBUTED__COMM__TLS__{end}" for end in ("CA_FILE", "CLIENT__CERT", "CLIENT__KEY")}
+
+
+@needs_dask
+def test_an_encrypted_address_without_certificates_is_a_clear_error(tmp_path: Path) -> None:
+    assert not NO_CERTIFICATES & set(os.environ)
+    code, _, err = run_slosh(tmp_path, *sweep(2, "--cluster", "tls://127.0.0.1:1"))
+    assert code == 2, err
+    assert "tls://127.0.0.1:1 needs certificates: name them under distributed.comm.tls" in err
+    assert "Traceback" not in err
+
+
+@needs_dask
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="no openssl to make certificates with")
+def test_a_cluster_with_certificates_is_reached_by_the_configuration_of_dask(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make = "req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=slosh -addext subjectAltName=IP:127.0.0.1"
+    files = ["-keyout", "key.pem", "-out", "cert.pem"]
+    subprocess.run(["openssl", *make.split(), *files], cwd=tmp_path, check=True, capture_output=True)
+    cert, key = str(tmp_path / "cert.pem"), str(tmp_path / "key.pem")
+    ends = {end: {"cert": cert, "key": key} for end in ("client", "scheduler")}
+    settings = {"distributed": {"comm": {"tls": {"ca-file": cert, **ends}, "require-encryption": True}}}
+    (tmp_path / "dask.yaml").write_text(json.dumps(settings))
+    monkeypatch.setenv("DASK_CONFIG", str(tmp_path / "dask.yaml"))
+    words = [sys.executable, "-m", "dask", "scheduler", "--protocol", "tls", "--host", "127.0.0.1", "--no-dashboard"]
+    words += ["--port", "0", "--scheduler-file", "scheduler.json"]
+    with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as scheduler:
+        try:
+            address = address_in(tmp_path / "scheduler.json")
+            assert address.startswith("tls://")
+            code = f"from slosh_cli.study.cluster import Cluster; print(Cluster({address!r}).words)"
+            asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+            assert asked.stdout == f"the cluster at {address}, which has no workers yet\n", asked.stderr
+        finally:
+            scheduler.kill()
 
 
 def test_without_dask_the_user_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
