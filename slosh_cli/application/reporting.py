@@ -31,6 +31,10 @@ _CHARTS: Final = (
 _PROVENANCE: Final = ("program", "program_version", "created", "python_version", "numpy_version", "numba_version")
 _IN_WORDS: Final = ("warnings", "reason", "name")
 _LOCKED_SPEED: Final = 1e-3
+INPUTS_NOTE: Final = (
+    "As resolved, with units. Yours: the file says it, and the program does not know how sure it is. Default: the "
+    "program's own value. Measured, published, assumed: of a preset. Computed: by the program from the other values."
+)
 
 
 def write_report(source: str | Path, target: str | Path | None = None) -> Path:
@@ -200,35 +204,21 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
         page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
         page_table(
             "Inputs",
-            ("key", "value", "standing"),
+            ("key", "value", "standing", "source"),
             inputs,
-            "As resolved, with units. Default: the file said nothing of it; else the preset it was taken from.",
+            INPUTS_NOTE,
         ),
         page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
         _facts_table("Provenance", facts, _PROVENANCE),
     ]
 
 
-def _flat(data: Any, key: str = "") -> Iterator[tuple[str, str]]:
-    """Key paths and values of a scenario."""
-    if isinstance(data, Mapping | list):
-        pairs = data.items() if isinstance(data, Mapping) else enumerate(data, 1)
-        for name, value in pairs:
-            yield from _flat(value, f"{key}.{name}" if key else str(name))
-    else:
-        yield key, str(data)
+def _inputs(text: str) -> Iterator[tuple[str, str, str, str]]:
+    """Key paths and values of a scenario, each with its standing and source."""
+    from slosh_cli.scenario.standing import standings
 
-
-def _inputs(text: str) -> Iterator[tuple[str, str, str]]:
-    """Key paths and values of a scenario with what gave them where the file did not: `default`, or a preset."""
-    from slosh_cli.scenario.presets import DEFAULT, TAKEN
-    from slosh_cli.scenario.yaml_text import parse
-
-    given = dict(parse(text, "the scenario of the run").data)
-    taken = given.pop(TAKEN, {})
-    for key, value in _flat(given):
-        found = (name for path, name in taken.items() if key == path or key.startswith(f"{path}."))
-        yield key, value, next((name if name == DEFAULT else f"preset {name}" for name in found), "")
+    for key, one in standings(text).items():
+        yield key, str(one.value), one.standing, one.source
 
 
 def _said(name: str, before: str = "", after: str = "") -> str:

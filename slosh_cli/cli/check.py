@@ -1,6 +1,7 @@
 """`slosh check`: whether a scenario is sound, without running it."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -97,16 +98,19 @@ def _found(
     from slosh_cli.application.stop import outlook
     from slosh_cli.results.data_sheet import data_sheet, resonances
     from slosh_cli.results.validity import plain_checks, warnings_of
+    from slosh_cli.scenario.standing import counted_standings, standings
     from slosh_cli.track.spectrum import level_words, realised_level
 
     kind, defaults = ("a stop", stop.defaults) if stop else ("a tank alone", {})
-    (verdicts, advice), sheet = outlook(scenario), data_sheet(scenario)
+    (verdicts, advice), sheet, inputs = outlook(scenario), data_sheet(scenario), standings(scenario)
     level, told = level_words(stop.track.unevenness) if stop else "", resonances(sheet)
     found = {"name": scenario.name, "valid": True, "describes": kind, "file": str(file)}
     found |= {"data_sheet": sheet, "resonances": told} | ({"defaults": defaults} if stop else {})
+    found |= {"inputs": {key: asdict(one) for key, one in inputs.items()}}
     found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
     found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings_of(verdicts)}
-    lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet), *default_lines(defaults), *told]
+    lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet)]
+    lines += [counted_standings(inputs), *default_lines(defaults), *told]
     return found, [*lines, *([level] if level else []), advice.sentence]
 
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from threading import Event
 from typing import Any, Final
 
-from slosh_cli.errors import ScenarioError, ValueRefused
+from slosh_cli.errors import ScenarioError
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.leaves import Quantity
 from slosh_cli.scenario.plain_data import plain_data
-from slosh_cli.scenario.presets import DEFAULT, find_preset
+from slosh_cli.scenario.schema_friction import FrictionTable
+from slosh_cli.scenario.standing import YOURS, standings
 from slosh_cli.scenario.tree import Spot, value_at
 from slosh_cli.scenario.units import shown
 from slosh_cli.scenario.yaml_text import parse
@@ -37,8 +38,7 @@ _INTERVAL: Final = 100.0
 class Doubt:
     """A value of the scenario and how far it may be off: key path, texts of the value itself and of both ends.
 
-    `standing`: default, assumed, published, measured (of a preset) or given (by the file). `ends` are what the scenario
-    takes at both of them: SI numbers or words.
+    `standing` is that of `standings`. `ends` are what the scenario takes at both of them: SI numbers or words.
     """
 
     key: str
@@ -78,14 +78,13 @@ class Effect:
 
 def doubts(scenario: Scenario) -> Iterator[Doubt]:
     """Every value that is not certain: those of the package's table, and what presets assume."""
-    table, data = _plausible(), plain_data(scenario, as_text=False)
-    assumed = {
-        key: _ANY for key in scenario.presets if _standing(scenario, data, key) == "assumed" and key not in table
-    }
+    table, data, known = _plausible(), plain_data(scenario, as_text=False), standings(scenario)
+    assumed = {key: _ANY for key, one in known.items() if one.standing == "assumed" and key not in table}
     for key, entry in (table | assumed).items():
         if key == _MODAL and scenario.tank.liquid.model != "modal":
             continue
-        found = _doubt(scenario, data, key, entry)
+        standing = next((one.standing for name, one in known.items() if f"{name}.".startswith(f"{key}.")), YOURS)
+        found = _doubt(data, key, entry, standing)
         if found is not None:
             yield found
 
@@ -145,29 +144,19 @@ def _plausible() -> dict[str, dict[str, Any]]:
     return {str(key): dict(entry) for key, entry in data.items()}
 
 
-def _standing(scenario: Scenario, data: Mapping[str, Any], key: str) -> str:
-    """default, what its preset says of it, or given."""
-    name, path = scenario.presets.get(key), tuple(key.split("."))
-    if key in scenario.defaults:
-        return DEFAULT
-    part = Spot(part=Scenario).part_at(data, path[:-1])
-    try:
-        leaves = find_preset(name).leaves.items() if name and part else ()
-    except ValueRefused:
-        return "given"
-    same = (leaf for place, leaf in leaves if part and (*place[:-1], part.field_of(str(place[-1]))) == path)
-    return next((leaf.standing for leaf in same), "given")
-
-
-def _doubt(scenario: Scenario, data: Mapping[str, Any], key: str, entry: Mapping[str, Any]) -> Doubt | None:
+def _doubt(data: Mapping[str, Any], key: str, entry: Mapping[str, Any], standing: str) -> Doubt | None:
     """The doubt of a key; None where the scenario has no such number. `data` is the scenario as plain data."""
     path = tuple(key.split("."))
     own, spot = value_at(data, path), Spot(part=Scenario).at(data, path)
-    standing, reason = _standing(scenario, data, key), entry["reason"]
-    if spot is not None and spot.short is not None and own is not None:
+    reason = entry["reason"]
+    if spot is not None and spot.short is not None and own is not None and "from" in entry:
         words = (word for word, one in spot.short.known.items() if plain_data(one, as_text=False) == own)
         low, high = entry["from"], entry["to"]
         return Doubt(key, next(words, "its own"), low, high, standing, reason, (low, high))
+    if "times" in entry and isinstance(own, Mapping) and own.get("law") == FrictionTable.model_fields["law"].default:
+        tables = [_scaled(own["points"], times) for times in (1.0, *entry["times"])]
+        texts = [" ... ".join(dict.fromkeys(shown(one[end][1]) for end in (0, -1))) for one in tables]
+        return Doubt(key, texts[0], texts[1], texts[2], standing, reason, (tables[1], tables[2]))
     if spot is None or spot.leaf is None or not isinstance(own, float) or ("times" in entry and own == 0.0):
         return None
     if "times" in entry:
@@ -178,3 +167,8 @@ def _doubt(scenario: Scenario, data: Mapping[str, Any], key: str, entry: Mapping
     unit = f" {spot.leaf.unit}" if isinstance(spot.leaf, Quantity) else ""
     texts = [f"{shown(float(f'{value:.6g}'))}{unit}" for value in (own, *ends)]
     return Doubt(key, texts[0], texts[1], texts[2], standing, reason, (ends[0], ends[1]))
+
+
+def _scaled(points: Sequence[Sequence[Any]], times: float) -> list[list[float]]:
+    """Points of speed (m/s) and friction with the friction `times` as large."""
+    return [[float(speed), float(f"{friction * times:.6g}")] for speed, friction in points]

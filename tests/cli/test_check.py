@@ -104,7 +104,12 @@ def test_defaults_are_told(slosh: Slosh) -> None:
     assert told["contact.youngs_modulus"] == "2.1e11 Pa"
     assert "track.domain.length" not in told
     assert "track.rail.youngs_modulus" not in told
-    assert "contact: youngs_modulus 2.1e11 Pa, poisson_ratio 0.3" in slosh("check", "bare.yaml", *COMPUTED).out
+    plain = slosh("check", "bare.yaml", *COMPUTED).out
+    assert "contact: youngs_modulus 2.1e11 Pa, poisson_ratio 0.3" in plain
+    inputs = json.loads(slosh("check", "bare.yaml", "--json", *COMPUTED).out)["inputs"]
+    assert inputs["contact.kalker_c11"] == {"value": "4.12", "standing": "default", "source": "assumed: usual"}
+    assert inputs["wagon.bogie.mass"]["standing"] == "yours"
+    assert f"Of {len(inputs)} values " in plain
     assert "contact: " not in slosh("check", PAPER, *COMPUTED).out
 
 

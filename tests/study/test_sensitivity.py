@@ -14,7 +14,7 @@ from slosh_cli.scenario import Scenario, load_scenario
 from slosh_cli.study.sensitivity import DISTANCE, LOCK, SMALL, UNLOADING, Doubt, Effect, doubts
 
 _RIGID = ("tank.liquid.model=rigid", "solver.tolerance=1e-3", "tank.coefficients=computed")
-_WORN = Doubt("contact.kalker_c11", "4", "3", "5", "given", "wear", (3.0, 5.0))
+_WORN = Doubt("contact.kalker_c11", "4", "3", "5", "yours", "wear", (3.0, 5.0))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def _row(distance: float | None = 100.0, lock: float | None = None, status: str 
 def test_each_doubt_tells_its_standing_its_ends_and_why(stop: Scenario) -> None:
     told = {one.key: one for one in doubts(stop)}
     assert told["wagon.car_body.pitch_inertia"].standing == "assumed"
-    assert told["track.rail.youngs_modulus"].standing == "given"
+    assert told["track.rail.youngs_modulus"].standing == "yours"
     mass = told["wagon.wheelset.mass"]
     assert mass.ends[0] == pytest.approx(0.9 * stop.wagon.wheelset.mass)
     assert mass.reason.startswith("assumed; 10 %")
@@ -46,7 +46,16 @@ def test_each_doubt_tells_its_standing_its_ends_and_why(stop: Scenario) -> None:
     assert "tank.liquid.damping_ratio" not in told
     assert all(one.reason and one.low != one.high for one in told.values())
     assert all(low <= high for low, high in (one.ends for one in told.values() if one.key != "contact.adhesion"))
-    assert {one.standing for one in doubts(load_scenario("tank-wagon", _RIGID))} <= {"given", "default"}
+    assert {one.standing for one in doubts(load_scenario("tank-wagon", _RIGID))} <= {"yours", "default"}
+
+
+def test_the_values_of_a_brake_from_a_preset_go_up_and_down() -> None:
+    braking = "braking={use: k-blocks, initial_speed: 80 km/h, onset: 0.5 s}"
+    told = {one.key: one for one in doubts(load_scenario("tank-wagon", [*_RIGID, braking]))}
+    friction = told["braking.blocks.friction"]
+    assert (friction.own, friction.low, friction.high, friction.standing) == ("0.27", "0.216", "0.324", "assumed")
+    assert friction.ends == ([[0.0, 0.216]], [[0.0, 0.324]])
+    assert told["braking.application.time_95"].ends == pytest.approx((3.6, 4.4))
 
 
 def test_effects_are_those_of_the_stop_itself(stop: Scenario, found: Sensitivity) -> None:
@@ -71,7 +80,7 @@ def test_table_and_chart_are_kept(found: Sensitivity, tmp_path: Path) -> None:
     assert sorted(Path(file).suffix for file in files["figures"]) == [".png", ".svg"]
     chart = next(file for file in files["figures"] if file.endswith(".svg"))
     text = Path(chart).read_text(encoding="utf-8")
-    assert "braking.torque (given)" in text
+    assert "braking.torque (yours)" in text
     assert "track.rail.mass_per_length" not in text
     assert "the scenario itself locks no wheel" in text
 
