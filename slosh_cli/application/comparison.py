@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.differing import Difference
 from slosh_cli.application.runs import AnyRun, trains_of
@@ -15,6 +15,8 @@ from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
 from slosh_cli.results.result import Record, Result
 from slosh_cli.results.train_result import TrainResult
+from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.train_file import TrainScenario
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slosh_cli.application.keeping import Keeping
-    from slosh_cli.scenario import Scenario
-    from slosh_cli.scenario.train_file import TrainScenario
 
 _FIGURES: Final = ("compare_speed", "compare_wheel_loads", "compare_slosh", "compare_brake")
 _TRAIN_FIGURES: Final = ("compare_train_speed", "compare_train_forces")
@@ -91,14 +91,11 @@ def _figures(runs: Sequence[AnyRun], names: Sequence[str]) -> Mapping[str, Calla
     return {name: partial(compare_figure, name, wagons, names) for name in _FIGURES if suits(name, wagons)}
 
 
-_Stop = TypeVar("_Stop", "Scenario", "TrainScenario")
-
-
-def solid_twin(scenario: _Stop) -> _Stop:
+def solid_twin(scenario: Scenario | TrainScenario) -> Scenario | TrainScenario:
     """The same stop with the equivalent solid in every tank. Raises UsageError where all loads are solid already."""
-    tanks = [one.tank for one in getattr(scenario, "vehicles", (scenario,))]
-    key = "all.tank.liquid.model" if hasattr(scenario, "vehicles") else "tank.liquid.model"
-    if all(tank.liquid.model == "rigid" for tank in tanks):
+    key = "tank.liquid.model" if isinstance(scenario, Scenario) else "all.tank.liquid.model"
+    vehicles = [scenario] if isinstance(scenario, Scenario) else scenario.vehicles
+    if all(one.tank.liquid.model == "rigid" for one in vehicles):
         fix = f"leave --twin out, or set {key} to modal"
         raise UsageError(f"--twin compares a liquid with its solid, but the load of {scenario.name} is rigid; {fix}")
     return scenario.with_({key: "rigid"})

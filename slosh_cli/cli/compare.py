@@ -12,6 +12,8 @@ from slosh_cli.cli.output import say, say_json
 
 if TYPE_CHECKING:
     from slosh_cli.application.differing import Difference
+    from slosh_cli.results.stored import History
+    from slosh_cli.results.train_result import TrainHistory
 
 _Files = Annotated[list[Path], typer.Argument(metavar="A.h5 B.h5 ...", help="History files of runs.")]
 _FOLDER = "Folder for the figures. Default: outputs/compare."
@@ -33,7 +35,7 @@ def compare_command(
     from slosh_cli.application.runs import read_runs
     from slosh_cli.cli.keeping import told
 
-    runs = read_runs(history_files)
+    runs: Sequence[History | TrainHistory] = read_runs(history_files)
     names = [
         f"{chr(65 + k)}: {run.name} ({file})" for k, (run, file) in enumerate(zip(runs, history_files, strict=True))
     ]
