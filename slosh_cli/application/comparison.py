@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from slosh_cli.application.differing import Difference
+from slosh_cli.application.runs import AnyRun, trains_of
+from slosh_cli.application.train_comparison import train_differences, train_liquid_words
 from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
-from slosh_cli.results.files import FileError
 from slosh_cli.results.result import Record, Result
-from slosh_cli.results.stored import History
-from slosh_cli.scenario.yaml_text import parse
+from slosh_cli.results.train_result import TrainResult
+from slosh_cli.scenario import Scenario
+from slosh_cli.scenario.train_file import TrainScenario
 
 if TYPE_CHECKING:
-    from slosh_cli.application.keeping import Keeping
-    from slosh_cli.scenario import Scenario
+    from collections.abc import Callable
 
-_MOST: Final = 6
-"""Runs that can be told apart in one picture."""
+    from matplotlib.figure import Figure
+
+    from slosh_cli.application.keeping import Keeping
+
 _FIGURES: Final = ("compare_speed", "compare_wheel_loads", "compare_slosh", "compare_brake")
+_TRAIN_FIGURES: Final = ("compare_train_speed", "compare_train_forces")
 _OF_THE_SOLVER: Final = frozenset(
     {"steps", "rejected_steps", "solve_seconds", "energy_residual", "mean_total_wheel_load_N"}
 )
@@ -31,50 +35,11 @@ _BESIDES: Final = frozenset({"fill", "surface_limit_m", "static_wheel_load_N", "
 """Answers that follow from the inputs: told only where they differ."""
 
 
-@dataclass(frozen=True)
-class Difference:
-    """One answer of every run; `name` carries its SI unit where it has one, None stands where a run has no such number.
-
-    unit: as shown, counted in `per` SI units. Of an answer per wheel it is the least or the largest of the wheels.
-    """
-
-    name: str
-    meaning: str
-    unit: str
-    per: float
-    values: tuple[float | None, ...]
-
-    @property
-    def label(self) -> str:
-        """What people call it: its name without the unit, and whether it is of one wheel."""
-        words = self.name
-        for ending in ("_m_s", "_N_m", "_N", "_m", "_s"):
-            if words.endswith(ending):
-                words = words.removesuffix(ending)
-                break
-        return f"{words.replace('_', ' ')} ({self.meaning})"
-
-    def change(self, place: int) -> float | None:
-        """Run `place` minus the first run; None where one of both has no number."""
-        first, other = self.values[0], self.values[place]
-        return None if first is None or other is None else other - first
-
-    def percent(self, place: int) -> float | None:
-        """The change in per cent of the first run; None where that is zero, too."""
-        change, first = self.change(place), self.values[0]
-        return None if change is None or not first else 100.0 * change / abs(first)
-
-    def as_dict(self) -> dict[str, Any]:
-        """The answer as JSON has it, in SI units."""
-        others = range(1, len(self.values))
-        told = {"name": self.name, "meaning": self.meaning, "values": list(self.values)}
-        return told | {
-            name: [of(k) for k in others] for name, of in (("change", self.change), ("percent", self.percent))
-        }
-
-
-def differences(runs: Sequence[Record]) -> list[Difference]:
-    """Every answer of the stops that is a number, for all of `runs`."""
+def differences(runs: Sequence[AnyRun]) -> list[Difference]:
+    """Every answer of the stops that is a number, for all of `runs`: all of wagons, or all of trains (UsageError)."""
+    trains = trains_of(runs)
+    if trains is not None:
+        return train_differences(trains)
     found = []
     for one in Result.in_table(Shown.SUMMARY, Place.DISTANCE):
         if one.unit and one.name not in _OF_THE_SOLVER and one.kind is not bool:
@@ -105,90 +70,48 @@ def _number(one: Answer, value: Any) -> float | None:
     return float(value) if value is not None and math.isfinite(value) else None
 
 
-def differing_inputs(runs: Sequence[Record]) -> dict[str, list[Any]]:
-    """Key path -> its value in every run, with its unit as the scenario has it, where these differ.
-
-    None stands where a run has no such key. Name and description do not count.
-    """
-    found = [dict(_leaves(parse(_text(run), run.name).data)) for run in runs]
-    keys = dict.fromkeys(key for one in found for key in one if key not in ("name", "description"))
-    values = {key: [one.get(key) for one in found] for key in keys}
-    return {key: told for key, told in values.items() if any(value != told[0] for value in told)}
-
-
-def _text(run: Record) -> str:
-    from slosh_cli.results.hdf5 import scenario_text
-
-    return (
-        run.scenario_text
-        if isinstance(run, History)
-        else scenario_text(run.scenario)
-        if isinstance(run, Result)
-        else ""
-    )
-
-
-def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(value, Mapping) and value:
-        for key, inner in value.items():
-            yield from _leaves(inner, f"{path}.{key}" if path else str(key))
-    else:
-        yield path, value
-
-
-def read_runs(files: Sequence[Path]) -> list[History]:
-    """The runs of history files. Raises UsageError and FileError for files that cannot be compared, with what to do."""
-    from slosh_cli.results.hdf5 import is_train_history, read_history
-
-    if not 2 <= len(files) <= _MOST:
-        raise UsageError(f"two to {_MOST} runs can be compared; given {len(files)}; write `slosh compare A.h5 B.h5`")
-    known: dict[Path, Path] = {}
-    for file in files:
-        if (twice := known.setdefault(file.resolve(), file)) is not file:
-            raise UsageError(f"{twice} and {file} are the same file; give another run to compare with", str(file))
-    for file in files:
-        if is_train_history(file):
-            fix = f"draw it with `slosh plot {file}`"
-            raise UsageError(f"{file} is the run of a train, and only runs of single wagons can be compared; {fix}")
-    runs = []
-    for file in files:
-        try:
-            runs.append(read_history(file))
-        except FileError as error:
-            fix = "" if file.is_dir() else "; give history files (run.h5) that `slosh run` wrote"
-            raise FileError(f"{error.message}{fix}", where=str(file)) from error
-    return runs
-
-
-def keep_comparison(runs: Sequence[Record], names: Sequence[str], folder: Path, keeping: Keeping) -> list[str]:
+def keep_comparison(runs: Sequence[AnyRun], names: Sequence[str], folder: Path, keeping: Keeping) -> list[str]:
     """Draw the histories of `runs` over each other into `folder`; returns the files that are there."""
+    from slosh_cli.application.plotting import writers
     from slosh_cli.report import FORMATS
+
+    owned = [f"{name}.{kind}" for name in (*_FIGURES, *_TRAIN_FIGURES) for kind in FORMATS]
+    return keeping.keep(folder, owned, {}, writers(dict(_figures(runs, names))))
+
+
+def _figures(runs: Sequence[AnyRun], names: Sequence[str]) -> Mapping[str, Callable[[], Figure]]:
+    """What draws each figure that suits the runs."""
     from slosh_cli.report.compare_figures import compare_figure, suits
+    from slosh_cli.report.compare_train_figures import compare_train_figures
 
-    def draw(name: str, place: Path) -> None:
-        from slosh_cli.report.saving import save, styled
-
-        with styled():
-            save(compare_figure(name, runs, names), place, name)
-
-    owned = [f"{name}.{kind}" for name in _FIGURES for kind in FORMATS]
-    return keeping.keep(folder, owned, {}, {name: partial(draw, name) for name in _FIGURES if suits(name, runs)})
+    trains = trains_of(runs)
+    if trains is not None:
+        return compare_train_figures(trains, names)
+    wagons = [run for run in runs if isinstance(run, Record)]
+    return {name: partial(compare_figure, name, wagons, names) for name in _FIGURES if suits(name, wagons)}
 
 
-def solid_twin(scenario: Scenario) -> Scenario:
-    """The same stop with the equivalent solid. Raises UsageError where the load is that solid already."""
-    if scenario.tank.liquid.model == "rigid":
-        fix = "leave --twin out, or set tank.liquid.model to modal"
+def solid_twin(scenario: Scenario | TrainScenario) -> Scenario | TrainScenario:
+    """The same stop with the equivalent solid in every tank. Raises UsageError where all loads are solid already."""
+    key = "tank.liquid.model" if isinstance(scenario, Scenario) else "all.tank.liquid.model"
+    vehicles = [scenario] if isinstance(scenario, Scenario) else scenario.vehicles
+    if all(one.tank.liquid.model == "rigid" for one in vehicles):
+        fix = f"leave --twin out, or set {key} to modal"
         raise UsageError(f"--twin compares a liquid with its solid, but the load of {scenario.name} is rigid; {fix}")
-    return scenario.with_({"tank.liquid.model": "rigid"})
+    return scenario.with_({key: "rigid"})
 
 
-def liquid_words(liquid: Record, solid: Record) -> list[str]:
-    """What the liquid did to the stop, beside its equivalent solid: distance, unloading, lock."""
-    return [_distance_words(liquid, solid), _unloading_words(liquid, solid), _lock_words(liquid, solid)]
+def liquid_words(liquid: Record | TrainResult, solid: Record | TrainResult) -> list[str]:
+    """What the liquid did to the stop, beside its equivalent solid: distance, forces of a train, unloading, lock."""
+    distance = _distance_words(liquid, solid)
+    if isinstance(liquid, TrainResult) and isinstance(solid, TrainResult):
+        return [distance, *train_liquid_words(liquid, solid)]
+    if isinstance(liquid, Record) and isinstance(solid, Record):
+        return [distance, _unloading_words(liquid, solid), _lock_words(liquid, solid)]
+    raise TypeError("A liquid and its solid must be runs of one kind, but a wagon and a train were given.")
 
 
-def _distance_words(liquid: Record, solid: Record) -> str:
+def _distance_words(liquid: Record | TrainResult, solid: Record | TrainResult) -> str:
     mine, other = liquid.braking_distance_m, solid.braking_distance_m
     if mine is None or other is None:
         ended = " and ".join(

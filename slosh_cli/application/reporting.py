@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from slosh_cli.application.input_tables import inputs_table
 from slosh_cli.report.html import page_table, page_text, plain_numbers
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.files import FileError, write_text
@@ -29,12 +30,7 @@ _CHARTS: Final = (
     ("Force of the liquid on the tank, kN", 1e-3, ("liquid_force",)),
 )
 _PROVENANCE: Final = ("program", "program_version", "created", "python_version", "numpy_version", "numba_version")
-_IN_WORDS: Final = ("warnings", "reason", "name")
 _LOCKED_SPEED: Final = 1e-3
-INPUTS_NOTE: Final = (
-    "As resolved, with units. Yours: the file says it, and the program does not know how sure it is. Default: the "
-    "program's own value. Measured, published, assumed: of a preset. Computed: by the program from the other values."
-)
 
 
 def write_report(source: str | Path, target: str | Path | None = None) -> Path:
@@ -43,13 +39,14 @@ def write_report(source: str | Path, target: str | Path | None = None) -> Path:
     It appears whole or not at all. Raises FileError for a source that cannot be read or is something else.
     """
     from slosh_cli.application.study_report import study_page
+    from slosh_cli.application.train_report import train_page
     from slosh_cli.results.hdf5 import is_train_history
 
     path = Path(source)
     file = Path(target) if target is not None else (path if path.is_dir() else path.parent) / "report.html"
     if file.absolute() == path.absolute():
         raise FileError(f"the report must not replace its own source {path}", where=str(path))
-    text = study_page(path) if path.is_dir() else _train_page(path) if is_train_history(path) else _run_page(path)
+    text = study_page(path) if path.is_dir() else train_page(path) if is_train_history(path) else _run_page(path)
     write_text(text, file)
     return file
 
@@ -176,7 +173,6 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
     """Answers, checks, inputs, ledger and provenance."""
     facts = history.attributes
     checks = json.loads(facts["checks"]) if "checks" in facts else []
-    inputs = list(_inputs(history.scenario_text))
     answers = [
         (one.meaning, _words(getattr(history, one.name)), one.unit)
         for one in history.table()
@@ -202,23 +198,10 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
             "Answers", ("answer", "value", "unit"), answers, "Computed by the model, SI units; lists are wheels 1 to 4."
         ),
         page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
-        page_table(
-            "Inputs",
-            ("key", "value", "standing", "source"),
-            inputs,
-            INPUTS_NOTE,
-        ),
+        inputs_table(history.scenario_text),
         page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),
         _facts_table("Provenance", facts, _PROVENANCE),
     ]
-
-
-def _inputs(text: str) -> Iterator[tuple[str, str, str, str]]:
-    """Key paths and values of a scenario, each with its standing and source."""
-    from slosh_cli.scenario.standing import standings
-
-    for key, one in standings(text).items():
-        yield key, str(one.value), one.standing, one.source
 
 
 def _said(name: str, before: str = "", after: str = "") -> str:
@@ -235,24 +218,3 @@ def _words(value: Any) -> str:
 
 def _facts_table(title: str, facts: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
     return page_table(title, ("name", "value"), [(name, _words(facts[name])) for name in facts if name in names])
-
-
-def _train_page(path: Path) -> str:
-    from slosh_cli.application.plotting import plot
-    from slosh_cli.results.hdf5 import read_train
-
-    train = read_train(path)
-    tables = [_facts_table("Answers", train.facts, set(train.facts) - {*_PROVENANCE, *_IN_WORDS})]
-    for title, found in (("Vehicles", train.vehicles), ("Couplings", train.couplings)):
-        names = [name for name in (found[0].facts if found else {}) if name not in ("scenario", "checks")]
-        rows = [(number, *(_words(one.facts.get(name)) for name in names)) for number, one in enumerate(found, 1)]
-        tables.append(page_table(title, ("number", *names), rows, "From the front, SI units."))
-    tables.append(_facts_table("Provenance", train.facts, _PROVENANCE))
-    distance = train.facts.get("braking_distance_m", np.nan)
-    stopped = f"The first vehicle stopped after {distance:.2f} m." if np.isfinite(distance) else "No braking distance."
-    warnings = [*str(train.facts.get("warnings", "")).splitlines(), str(train.facts.get("reason", ""))]
-    facts = {"title": train.name, "verdict": stopped, "warnings": [one for one in warnings if one], "tables": tables}
-    with tempfile.TemporaryDirectory() as folder:
-        drawn = plot(path, folder)
-        files = {name: Path(folder) / f"{name}.png" for name in drawn}
-        return page_text(facts, {}, files)

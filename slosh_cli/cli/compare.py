@@ -11,7 +11,9 @@ from slosh_cli.cli.options import AsJson, option
 from slosh_cli.cli.output import say, say_json
 
 if TYPE_CHECKING:
-    from slosh_cli.application.comparison import Difference
+    from slosh_cli.application.differing import Difference
+    from slosh_cli.results.stored import History
+    from slosh_cli.results.train_result import TrainHistory
 
 _Files = Annotated[list[Path], typer.Argument(metavar="A.h5 B.h5 ...", help="History files of runs.")]
 _FOLDER = "Folder for the figures. Default: outputs/compare."
@@ -24,14 +26,16 @@ def compare_command(
 ) -> ExitCode:
     """Compare runs: answers, inputs that differ, histories in one picture.
 
-    Runs are of single wagons. Changes are against the first run; a run without an answer has a dash. Figures of an
-    earlier comparison in the same folder are replaced.
+    Runs are all of single wagons or all of trains. Changes are against the first run; a run without an answer has a
+    dash. Figures of an earlier comparison in the same folder are replaced.
     """
-    from slosh_cli.application.comparison import differences, differing_inputs, keep_comparison, read_runs
+    from slosh_cli.application.comparison import differences, keep_comparison
+    from slosh_cli.application.differing import differing_inputs
     from slosh_cli.application.keeping import Keeping
+    from slosh_cli.application.runs import read_runs
     from slosh_cli.cli.keeping import told
 
-    runs = read_runs(history_files)
+    runs: Sequence[History | TrainHistory] = read_runs(history_files)
     names = [
         f"{chr(65 + k)}: {run.name} ({file})" for k, (run, file) in enumerate(zip(runs, history_files, strict=True))
     ]

@@ -1,15 +1,15 @@
 """`slosh run`: one stop, its history, its summary and its figures."""
 
 import threading
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.options import AsJson, OutputFolder, Overrides, ScenarioFile
 from slosh_cli.cli.output import note, say
-from slosh_cli.errors import UsageError
 
 if TYPE_CHECKING:
     from slosh_cli.results.result import Result
@@ -32,46 +32,60 @@ def run_command(
     Without -o the folder's name carries what was --set, and a number where it holds the run of another scenario; a run
     of the same scenario, or with -o any run in that folder, is replaced.
     """
-    from slosh_cli.scenario.train_file import is_train_file
-
-    if is_train_file(scenario_file):
-        from slosh_cli.cli.train import run_train
-
-        if twin:
-            fix = "vary it with `slosh sweep --vary all.tank.liquid.model=modal,rigid`"
-            raise UsageError(f"--twin is for single wagons, and {scenario_file} is a train; {fix}", "--twin")
-        return run_train(scenario_file, output, overrides, as_json=as_json, figures=not no_figures)
     from slosh_cli.application.keeping import Keeping, folder_of_run
-    from slosh_cli.application.stop import RUN_FILES, keep_run
+    from slosh_cli.application.twin import EarlierTwin
     from slosh_cli.cli.keeping import answered
-    from slosh_cli.cli.reading import load_given
-    from slosh_cli.cli.summary import show_run
-    from slosh_cli.scenario import load_scenario
 
-    scenario = load_given(load_scenario, scenario_file, overrides)
-    solid = _solid(scenario) if twin else None
-    folder = folder_of_run(scenario, output, overrides, RUN_FILES, note)
-    result = _simulate(scenario)
-    keeping = Keeping()
+    job = _job(scenario_file, overrides)
+    solid = _solid(job.scenario) if twin else None
+    folder = folder_of_run(job.scenario, output, overrides, job.files, note)
+    earlier = EarlierTwin(folder)
+    result, keeping = job.simulate(job.scenario), Keeping()
     if not as_json:
-        show_run(result)
-    files = keep_run(result, folder, keeping, figures=not no_figures)
+        job.show(result)
+    files = job.keep(result, folder, keeping, figures=not no_figures)
     if solid is None:
+        if words := earlier.drop():
+            note(words)
         return answered(result, files, keeping, as_json=as_json)
-    other = _simulate(solid)
-    kept = keep_run(other, folder / "solid", keeping, figures=not no_figures)
+    other = job.simulate(solid)
+    kept = job.keep(other, earlier.folder, keeping, figures=not no_figures)
     told = _beside(result, other, kept, as_json=as_json)
     code = answered(result, files, keeping, as_json=as_json, more={"twin": told})
     return code if other.braking_distance_m is not None or code is not ExitCode.DONE else ExitCode.NO_ANSWER
 
 
-def _solid(scenario: "Scenario") -> "Scenario":
+class _Job(NamedTuple):  # a wagon's stop or a train's: its scenario, the files of its run, and what is done with them
+    scenario: Any
+    files: Sequence[str]
+    simulate: Callable[[Any], Any]
+    show: Callable[[Any], None]
+    keep: Callable[..., dict[str, Any]]
+
+
+def _job(file: Path, overrides: Sequence[str] | None) -> _Job:
+    from slosh_cli.scenario.train_file import is_train_file, load_train
+
+    if is_train_file(file):
+        from slosh_cli.application.train import TRAIN_FILES, keep_train
+        from slosh_cli.cli.train import show_train, solve_train
+
+        return _Job(load_train(file, overrides or ()), TRAIN_FILES, solve_train, show_train, keep_train)
+    from slosh_cli.application.stop import RUN_FILES, keep_run
+    from slosh_cli.cli.reading import load_given
+    from slosh_cli.cli.summary import show_run
+    from slosh_cli.scenario import load_scenario
+
+    return _Job(load_given(load_scenario, file, overrides), RUN_FILES, _simulate, show_run, keep_run)
+
+
+def _solid(scenario: Any) -> Any:
     from slosh_cli.application.comparison import solid_twin
 
     return solid_twin(scenario)
 
 
-def _beside(liquid: "Result", solid: "Result", files: Mapping[str, Any], *, as_json: bool) -> dict[str, Any]:
+def _beside(liquid: Any, solid: Any, files: Mapping[str, Any], *, as_json: bool) -> dict[str, Any]:
     """Say what the liquid did; returns it with the answers and files of the solid, as JSON has them."""
     from slosh_cli.application.comparison import differences, liquid_words
 

@@ -6,31 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slosh_cli.cli.exit_codes import ExitCode
-from slosh_cli.cli.output import default_lines, note, say, say_json, show, warn
+from slosh_cli.cli.output import default_lines, say, say_json, show, warn
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from slosh_cli.results.train_result import TrainResult
     from slosh_cli.scenario.train_file import TrainScenario
-
-
-def run_train(
-    file: Path, output: Path | None, overrides: Sequence[str] | None, *, as_json: bool, figures: bool
-) -> ExitCode:
-    """Simulate the stop of a train, tell of it, keep its files."""
-    from slosh_cli.application.keeping import Keeping, folder_of_run
-    from slosh_cli.application.train import TRAIN_FILES, keep_train
-    from slosh_cli.cli.keeping import answered
-    from slosh_cli.scenario.train_file import load_train
-
-    train = load_train(file, overrides or ())
-    folder = folder_of_run(train, output, overrides, TRAIN_FILES, note)
-    result, keeping = _simulate(train), Keeping()
-    if not as_json:
-        _show(result)
-    files = keep_train(result, folder, keeping, figures=figures)
-    return answered(result, files, keeping, as_json=as_json)
 
 
 def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -> ExitCode:
@@ -60,7 +42,7 @@ def check_train(file: Path, overrides: Sequence[str] | None, *, as_json: bool) -
     return ExitCode.DONE
 
 
-def _simulate(train: "TrainScenario") -> "TrainResult":
+def solve_train(train: "TrainScenario") -> "TrainResult":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
     from slosh_cli.cli.progress import RunProgress, announce_solver
     from slosh_cli.results.simulate import simulate_train
@@ -75,7 +57,7 @@ def _simulate(train: "TrainScenario") -> "TrainResult":
             raise
 
 
-def _show(result: "TrainResult") -> None:
+def show_train(result: "TrainResult") -> None:
     """Print what a train's run found and what it warns of, to stdout."""
     from rich.text import Text
 

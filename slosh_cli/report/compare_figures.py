@@ -13,7 +13,7 @@ from slosh_cli.report.saving import INK
 from slosh_cli.results.channels import WHEELS, wheel
 from slosh_cli.results.result import Record
 
-_LOOKS: Final[Sequence[dict[str, Any]]] = (
+LOOKS: Final[Sequence[dict[str, Any]]] = (
     {"color": "#08306b", "linestyle": "-", "linewidth": 2.2},
     {"color": "#e07020", "linestyle": (0, (6, 2))},
     {"color": "#4a98c9", "linestyle": (0, (1.5, 1.2))},
@@ -21,6 +21,7 @@ _LOOKS: Final[Sequence[dict[str, Any]]] = (
     {"color": "#9a9a9a", "linestyle": "-", "linewidth": 1.2},
     {"color": "#111111", "linestyle": (0, (10, 3))},
 )
+"""How the runs of one picture are told apart, in their order."""
 _POSITION, _SLOSH = "position", "compare_slosh"
 _Panel = tuple[str, str, float]
 """Label of the vertical axis, channel, SI units that a unit of the axis counts."""
@@ -67,7 +68,7 @@ def compare_figure(name: str, runs: Sequence[Record], names: Sequence[str]) -> F
             continue
         for one, (label, channel, per) in zip(axes, panels, strict=True):
             values = _values(run, channel) / per
-            (line,) = one.plot(run.time - run.onset_s, values, **_LOOKS[place])
+            (line,) = one.plot(run.time - run.onset_s, values, **LOOKS[place])
             one.set_ylabel(label)
             drawn[shorten(names[place], 100, placeholder="...")] = line
     axes[-1].set_xlabel("time since the brake set in / s")

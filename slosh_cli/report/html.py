@@ -23,14 +23,15 @@ def page_text(facts: Mapping[str, Any], data: Mapping[str, Any], figures: Mappin
     Whatever the facts contain stays text. Raises FileError where the page would be larger than 5 MB.
     """
     folder = files("slosh_cli.report").joinpath("page")
-    parts = {name: folder.joinpath(name).read_text(encoding="utf-8") for name in ("base.html", "page.css", "page.js")}
+    names = ("base.html", "page.css", "page.js", "train.js")
+    parts = {name: folder.joinpath(name).read_text(encoding="utf-8") for name in names}
     page = jinja2.Environment(autoescape=True, undefined=jinja2.ChainableUndefined).from_string(parts["base.html"])
     text = page.render(
         facts,
         data=data,
         json=Markup(_json(data)),
         style=Markup(parts["page.css"]),
-        script=Markup(parts["page.js"]),
+        script=Markup(parts["page.js"] + parts["train.js"]),
         figures=[{"name": name, "uri": _uri(path)} for name, path in figures.items()],
     )
     if len(text.encode("utf-8")) > _LARGEST:

@@ -83,12 +83,12 @@ def read_train(path: Path) -> TrainHistory:
             for name, group in file.items()
             if name.startswith((_VEHICLE, _COUPLING))
         }
-        attributes = {key: _plain(value) for key, value in file.attrs.items()}
+        attributes, text = {key: _plain(value) for key, value in file.attrs.items()}, _text(path, file)
     columns = {f"{name}/{key}": values for name, part in parts.items() for key, values in part.channels.items()}
     _refuse(path, faults_of_columns(time, columns))
     vehicles = tuple(part for name, part in sorted(parts.items()) if name.startswith(_VEHICLE))
     couplings = tuple(part for name, part in sorted(parts.items()) if name.startswith(_COUPLING))
-    return TrainHistory(str(attributes["name"]), time, vehicles, couplings, attributes)
+    return TrainHistory(str(attributes["name"]), time, vehicles, couplings, attributes, text)
 
 
 def is_train_history(path: Path) -> bool:
@@ -187,8 +187,7 @@ def _is_known(name: str) -> bool:
 def _text(path: Path, file: h5py.File) -> str:
     """The scenario of the run as resolved YAML."""
     text = file[_SCENARIO][()] if isinstance(file.get(_SCENARIO), h5py.Dataset) else None
-    if not isinstance(text, bytes):
-        _refuse(path, [f"it lacks the text {_SCENARIO}"])
+    _refuse(path, [] if isinstance(text, bytes) else [f"it lacks the text {_SCENARIO}"])
     return str(text, "utf-8") if isinstance(text, bytes) else ""
 
 
@@ -209,13 +208,16 @@ def scenario_text(scenario: "Scenario | TankScenario | TrainScenario") -> str:
 
 def is_of(path: Path, scenario: "Scenario | TankScenario | TrainScenario", settings: str = "") -> bool:
     """Whether the file at `path` is the history of this scenario under these settings; descriptions do not count."""
+    return inputs_of(path) == f"{settings}\n{_without_words(scenario_text(scenario))}"
+
+
+def inputs_of(path: Path) -> str | None:
+    """Settings and scenario of a history, without name and description; None of what is no history of ours."""
     try:
         with h5py.File(path, "r") as file:
-            text = file[_SCENARIO][()].decode("utf-8")
-            found = str(file.attrs.get("settings", ""))
+            return f"{file.attrs.get('settings', '')}\n{_without_words(file[_SCENARIO][()].decode('utf-8'))}"
     except Exception:  # whatever it is, it is no history of ours
-        return False
-    return found == settings and _without_words(text) == _without_words(scenario_text(scenario))
+        return None
 
 
 def _without_words(text: str) -> str:

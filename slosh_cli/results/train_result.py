@@ -188,13 +188,22 @@ class StoredPart:
 
 @dataclass(frozen=True, eq=False)
 class TrainHistory:
-    """What figures show of a train: its name, `time` (n,) s, vehicles and couplings from the front, `facts` by name."""
+    """A train's run as its file has it: name, `time` (n,) s, vehicles and couplings from the front, `facts` by name.
+
+    `scenario_text` has the train's own file first; figures do without it.
+    """
 
     name: str
     time: Vector
     vehicles: tuple[StoredPart, ...]
     couplings: tuple[StoredPart, ...]
     facts: Mapping[str, Any] = field(default_factory=dict)
+    scenario_text: str = ""
+
+    @property
+    def status(self) -> Status:
+        """How the run ended."""
+        return Status(self.facts["status"])
 
 
 def _derive(record: Any) -> None:

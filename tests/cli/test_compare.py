@@ -9,7 +9,8 @@ import pytest
 from plausible import plausible_run, unfinished_run
 from stand_ins import PAPER, Slosh, Solver
 
-from slosh_cli.application.comparison import differences, differing_inputs, liquid_words
+from slosh_cli.application.comparison import differences, liquid_words
+from slosh_cli.application.differing import differing_inputs
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.scenario import load_scenario
@@ -63,7 +64,7 @@ def test_what_cannot_be_compared_is_refused_with_the_file(slosh: Slosh, runs: tu
         file.attrs["train_format_version"] = 1
     for wrong, word in (
         (first, "same file"), ("text.h5", "slosh run"), ("folder", "run.h5"), ("other.h5", "slosh run"),
-        ("missing.h5", "does not exist"), ("train.h5", "slosh plot train.h5"),
+        ("missing.h5", "does not exist"), ("train.h5", "slosh run"),
     ):  # fmt: skip
         done = slosh("compare", first, wrong)
         assert done.code == ExitCode.BAD_INPUT, wrong

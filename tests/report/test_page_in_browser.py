@@ -12,7 +12,8 @@ import pytest
 
 from slosh_cli.application.reporting import write_report
 from slosh_cli.application.stop import simulate
-from slosh_cli.results.hdf5 import write_history
+from slosh_cli.application.train import simulate_train
+from slosh_cli.results.hdf5 import write_history, write_train
 from slosh_cli.scenario import load_scenario
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -26,7 +27,8 @@ FRAME = """<pre id="found"></pre><iframe src="visit.html" width="{width}" height
 <script>addEventListener("message", (e) => {{ document.querySelector("#found").textContent = e.data; }});</script>"""
 VISIT = """<script>
 window.alert = () => found.errors.push("alert");
-const picture = () => document.querySelector("#wagon")?.toDataURL(), scrub = document.querySelector("#scrub");
+const picture = () => document.querySelector("#wagon, #waterfall")?.toDataURL();
+const scrub = document.querySelector("#scrub");
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 const key = (name) => document.body.dispatchEvent(new KeyboardEvent("keydown", {key: name, bubbles: true}));
 (async () => {
@@ -50,6 +52,10 @@ const key = (name) => document.body.dispatchEvent(new KeyboardEvent("keydown", {
     table.tHead.rows[0].cells[2].firstChild.click(); found.up = column();
     table.tHead.rows[0].cells[2].firstChild.click(); found.down = column();
   }
+  found.sorted = [...document.querySelectorAll("table.sortable")].map((one) => {
+    const head = one.tHead.rows[0].cells[3]; head.firstChild.click();
+    return [head.textContent, [...one.tBodies[0].rows].map((row) => row.cells[3].textContent)];
+  });
   parent.postMessage(JSON.stringify(found), "*");
 })();
 </script>"""
@@ -97,6 +103,43 @@ def test_a_run_replays(run_page: Path, width: int) -> None:
     assert found["played"]
     assert found["paused"]
     assert found["wide"] <= 0
+
+
+TRAIN = """\
+format: 1
+name: four
+description: <script>alert(1)</script>
+vehicles:
+  - {scenario: paper-80-solid, set: {name: front, tank.coefficients: computed}}
+  - {scenario: paper-80-solid, count: 3, set: {tank.fill: 0.3, tank.coefficients: computed}}
+braking: {initial_speed: 10 km/h, onset: 0.2 s}
+output: {interval: 20 ms}
+"""
+
+
+@pytest.fixture(scope="module")
+def train_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("train")
+    (folder / "four.yaml").write_text(TRAIN, encoding="utf-8")
+    write_train(simulate_train(folder / "four.yaml"), folder / "run.h5")
+    return write_report(folder / "run.h5")
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_train_replays(train_page: Path, width: int) -> None:
+    found = visited(train_page, width)
+    assert found["errors"] == []
+    assert found["scripts"] == 4
+    assert found["scrubbed"]
+    assert re.fullmatch(r"\d+\.\d\d s, \d+\.\d km/h, (compression|tension) \d+\.\d kN in coupling \d", found["now"])
+    assert found["stepped"] == 1
+    assert found["played"]
+    assert found["paused"]
+    assert found["wide"] <= 0
+    assert [head for head, _ in found["sorted"]] == ["onset, s", "at, s"]
+    for _, column in found["sorted"]:
+        assert sorted(column, key=float) == column
+        assert len(set(column)) > 1
 
 
 def test_a_table_sorts_by_number(tmp_path: Path) -> None:

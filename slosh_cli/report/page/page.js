@@ -113,7 +113,7 @@
     const quoted = (cell) => "\"" + cell.textContent.replace(/"/g, "\"\"") + "\"";
     table.closest("section").querySelector(".download").addEventListener("click", () => {
       const text = [...table.rows].map((row) => [...row.cells].map(quoted).join(",")).join("\r\n");
-      const link = document.createElement("a"); link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" })); link.download = "study.csv"; link.click();
+      const link = document.createElement("a"); link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" })); link.download = table.closest("section").querySelector("h2").textContent.toLowerCase().replace(/\W+/g, "-") + ".csv"; link.click();
     });
   }
   if (data.time) replay();
