@@ -74,23 +74,29 @@ class Problem:
     def where(self, file: str) -> str:
         """The place in one word: the override, ``file:line`` or the bare file."""
         if self.override:
-            return _printable(_short(self.override))
+            return printable(shortened(self.override))
         return file if self.line is None else f"{file}:{self.line}"
 
     def text(self, file: str) -> str:
         """The whole message on one line, ``where: key.path: rule; given ...; what to write``."""
-        key = "" if self.override.endswith(self.key) else _short(self.key)
-        parts = [self.where(file), key, f"{_short(self.rule)}; given {_short(self.given)}; {_short(self.fix)}"]
-        return _printable(": ".join(part for part in parts if part))
+        key = "" if self.override.endswith(self.key) else shortened(self.key)
+        parts = [self.where(file), key, f"{shortened(self.rule)}; given {shortened(self.given)}; {shortened(self.fix)}"]
+        return printable(": ".join(part for part in parts if part))
 
 
-def _short(text: str) -> str:
+def shortened(text: str) -> str:
+    """`text`, or the beginning of it where it is longer than a piece of a message may be."""
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
-def _printable(text: str) -> str:
-    """`text` with line ends and control characters spelt out, so that a message keeps to its line."""
-    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+def printable(text: str, kept: str = "") -> str:
+    """`text` with line ends and control characters spelt out, but for those `kept`.
+
+    A message keeps to its line, and nothing of it steers a terminal.
+    """
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() or letter in kept else repr(letter)[1:-1] for letter in text)
 
 
 class ScenarioError(SloshError):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import tempfile
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -11,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from slosh_cli.application.input_tables import inputs_table
+from slosh_cli.errors import ScenarioError
 from slosh_cli.report.html import page_table, page_text, plain_numbers
 from slosh_cli.results.channels import WHEELS, wheel
-from slosh_cli.results.files import FileError, write_text
+from slosh_cli.results.files import FileError, try_targets, write_text
 
 if TYPE_CHECKING:
     from slosh_cli.arrays import Integers
@@ -60,9 +59,10 @@ def animate(source: str | Path, target: str | Path | None = None) -> Path:
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     path = Path(source)
-    file = Path(target) if target is not None else path.with_name("animation.gif")
     history, profile = read_history(path), read_surface(path)
-    write_animation(history.name, _run_data(history, _scenario(history), profile, _picked(history)), file)
+    file = Path(target) if target is not None else path.with_name("animation.gif")
+    try_targets(file.parent, [file.name])
+    write_animation(history.name, _run_data(history, _scenario(path, history), profile, _picked(history)), file)
     return file
 
 
@@ -70,7 +70,7 @@ def _run_page(path: Path) -> str:
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     history, profile = read_history(path), read_surface(path)
-    rows = _picked(history)
+    scenario, rows = _scenario(path, history), _picked(history)
     facts = {
         "title": history.name,
         "verdict": _verdict(history),
@@ -80,7 +80,7 @@ def _run_page(path: Path) -> str:
         "tables": _run_tables(history),
         "scenario": history.scenario_text,
     }
-    return page_text(facts, _run_data(history, _scenario(history), profile, rows), {})
+    return page_text(facts, _run_data(history, scenario, profile, rows), {})
 
 
 def _picked(history: History) -> Integers:
@@ -109,14 +109,15 @@ def _surface_words(history: History, profile: SurfaceProfile | None) -> str:
     return f"The surface is that of the slosh modes, cut off at the tank's bottom and roof.{assumed}"
 
 
-def _scenario(history: History) -> Scenario:
-    """The scenario of the run, from its text."""
-    from slosh_cli.scenario import load_scenario
+def _scenario(path: Path, history: History) -> Scenario:
+    """The scenario of the run, from its text. Raises FileError where that is none."""
+    from slosh_cli.scenario import parse_scenario
 
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "scenario.yaml"
-        file.write_text(history.scenario_text, encoding="utf-8")
-        return load_scenario(file)
+    try:
+        return parse_scenario(history.scenario_text, "scenario")
+    except ScenarioError as error:
+        told = f"its scenario is none that this version can read: {error.problems[0].text('scenario')}"
+        raise FileError(f"cannot read {path} as a slosh history: {told}; run it again", where=str(path)) from error
 
 
 def _run_data(history: History, scenario: Scenario, profile: SurfaceProfile | None, rows: Integers) -> dict[str, Any]:
@@ -172,7 +173,6 @@ def _chart(history: History, rows: Integers, title: str, scale: float, names: Se
 def _run_tables(history: History) -> list[dict[str, Any]]:
     """Answers, checks, inputs, ledger and provenance."""
     facts = history.attributes
-    checks = json.loads(facts["checks"]) if "checks" in facts else []
     answers = [
         (one.meaning, _words(getattr(history, one.name)), one.unit)
         for one in history.table()
@@ -185,13 +185,13 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
     ]
     judged = [
         (
-            one["check"],
-            _words(one["value"]),
-            _words(one["limit"]),
-            "within" if one["within"] else "over its limit",
-            one.get("standing") or "model",
+            one.name,
+            _words(one.value),
+            _words(one.limit),
+            "within" if one.within else "over its limit",
+            one.standing or "model",
         )
-        for one in checks
+        for one in getattr(history, "checks", ())
     ]
     return [
         page_table(

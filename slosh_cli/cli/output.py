@@ -8,17 +8,23 @@ import sys
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, Final, TextIO
 
 import typer
+
+from slosh_cli.errors import printable
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+_KEPT: Final = "\n\t\u00a0"
+"""What a text may hold besides letters. Control characters, which may be of a file, would steer the terminal."""
+
+
 def say(text: str) -> None:
     """Print a line that belongs to the answer, to stdout."""
-    _to_stdout(text + "\n")
+    _to_stdout(printable(text, _KEPT) + "\n")
 
 
 def note(text: str) -> None:
@@ -67,7 +73,8 @@ def show(*renderables: "RenderableType", whole: bool = False) -> None:
     except OSError as error:  # rich looks whether stdout is still there
         refused(error)
         return
-    _to_stdout(capture.get())
+    shown = capture.get()
+    _to_stdout(shown if console.is_terminal else printable(shown, _KEPT))
 
 
 def _strict(value: Any) -> Any:
@@ -153,6 +160,6 @@ def _to_stdout(text: str) -> None:
 
 def _to_stderr(text: str, colour: str | None = None) -> None:
     try:
-        typer.secho(text, err=True, fg=colour)
+        typer.secho(printable(text, _KEPT), err=True, fg=colour)
     except OSError:  # nobody can be told
         _silence(sys.stderr)

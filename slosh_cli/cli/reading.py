@@ -1,5 +1,6 @@
 """Reading the scenario a command was given."""
 
+import os
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -17,7 +18,7 @@ def load_given(load: Callable[[Path, Sequence[str]], _S], path: Path, overrides:
     """
     from slosh_cli.scenario import packaged_scenarios
 
-    if path.exists():
+    if os.path.exists(path):  # which a name too long for the system does not
         return load(path, overrides or ())
     names = {known: name for name, file in packaged_scenarios().items() for known in (name, file.stem, file.name)}
     for meant in get_close_matches(path.name, names, n=1, cutoff=0.7):

@@ -13,10 +13,13 @@ import typer
 from slosh_cli.cli.app import tree
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.cli.output import close_stdout, complain, flush_streams, open_streams, refused, say_json
-from slosh_cli.errors import ScenarioError, SloshError
+from slosh_cli.errors import ScenarioError, SloshError, shortened
 
 _DEBUG: Final = "SLOSH_DEBUG"
 """Environment variable: when set, an unexpected error shows its traceback."""
+_MOST_LINES: Final = 24
+_LONGEST_LINE: Final = 2000
+"""Lines of an error, and letters of one; what is longer repeats what was given."""
 
 
 def execute(arguments: Sequence[str] | None = None) -> int:
@@ -69,6 +72,10 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
         text = str(error) if isinstance(error, ScenarioError) else f"error: {error}"
         _say_error(text, as_json, code=error.code, message=str(error), where=error.where)
         return ExitCode.BAD_INPUT
+    if isinstance(error, OSError):
+        told, file = _refusal_words(error)
+        _say_error(f"error: {told}", as_json, code="file", message=told, where=file)
+        return ExitCode.BAD_INPUT
     # Usage errors of the command-line library word themselves; their class moves between its versions.
     wording = getattr(error, "format_message", None)
     if wording is not None:
@@ -88,6 +95,19 @@ def _report(error: Exception, *, as_json: bool) -> ExitCode:
     return ExitCode.NO_ANSWER
 
 
+def _refusal_words(error: OSError) -> tuple[str, str]:
+    """What the system refused, and of which file."""
+    if os.environ.get(_DEBUG):
+        traceback.print_exception(error)
+    reason = error.strerror or str(error)
+    try:
+        os.getcwd()
+    except OSError:
+        return f"the current folder cannot be used: {reason}; change to another one and call slosh again", "."
+    file = "" if error.filename is None else shortened(os.fsdecode(error.filename))
+    return (f"the system refuses {file}: {reason}" if file else f"the system refuses: {reason}"), file
+
+
 def _comes_from_printing(error: OSError) -> bool:
     """Whether the command-line library met the error, which prints its help itself and opens no files."""
     trace = error.__traceback__
@@ -102,10 +122,16 @@ def _interrupted(*, as_json: bool) -> ExitCode:
 
 
 def _say_error(text: str, as_json: bool, **error: str) -> None:
-    """An error for people on stderr and, when asked for, for scripts on stdout."""
+    """An error for people on stderr and, when asked for, for scripts on stdout; what was given may be long."""
     if as_json:
-        say_json({"error": error})
-    complain(text)
+        say_json({"error": {key: _bounded(words) for key, words in error.items()}})
+    complain(_bounded(text))
+
+
+def _bounded(text: str) -> str:
+    """A text with its first lines, and the beginnings of these."""
+    lines = text.split("\n", _MOST_LINES)[:_MOST_LINES]
+    return "\n".join(line if len(line) <= _LONGEST_LINE else f"{line[:_LONGEST_LINE]}..." for line in lines)
 
 
 def _forgive_encodings() -> None:

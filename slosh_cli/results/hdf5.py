@@ -1,5 +1,6 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
+import os
 import platform
 import re
 import sys
@@ -9,7 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
 
 import h5py
 import numpy as np
@@ -19,21 +20,30 @@ from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, SteadyFile, replacing
 from slosh_cli.results.result import Result
-from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
-from slosh_cli.results.surface import SurfaceProfile, surface_profile
-from slosh_cli.results.train_result import StoredPart, TrainHistory, TrainResult
+from slosh_cli.results.stored import (
+    History,
+    faults_of_answers,
+    faults_of_columns,
+    plain_attributes,
+    stored_columns,
+)
+from slosh_cli.results.stored_train import COUPLING, VEHICLE, stored_train
+from slosh_cli.results.surface import SurfaceProfile, stored_surface, surface_profile
+from slosh_cli.results.train_result import TrainHistory, TrainResult
 from slosh_cli.scenario.loader import Root
+from slosh_cli.scenario.source import other_than_file
 from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
     from slosh_cli.scenario.train_file import TrainScenario
 
+_F = TypeVar("_F")
+
 _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
-_VEHICLE: Final = "vehicle_"
-_COUPLING: Final = "coupling_"
 _SURFACE: Final = "surface_profile"
+_LONGEST_TEXT: Final = 1_000_000
 
 
 class _Group(NamedTuple):
@@ -61,42 +71,30 @@ def write_train(result: TrainResult, path: Path) -> None:
     for number, vehicle in enumerate(result.vehicles, 1):
         facts = vehicle.as_attributes() | {"scenario": scenario_text(vehicle.scenario)}
         found = {channel(name): values for name, values in vehicle.channels.items()}
-        groups[f"{_VEHICLE}{number:03d}"] = _Group(found, facts)
+        groups[f"{VEHICLE}{number:03d}"] = _Group(found, facts)
     for number, one in enumerate(result.couplings, 1):
         found = {info: getattr(one, info.name) for info in COUPLING_CHANNELS}
-        groups[f"{_COUPLING}{number:03d}"] = _Group(found, one.as_attributes())
+        groups[f"{COUPLING}{number:03d}"] = _Group(found, one.as_attributes())
     attributes = {"train_format_version": _FORMAT} | _circumstances() | result.as_attributes()
     _write(path, result.scenario, result.time, {}, attributes, groups)
 
 
 def read_train(path: Path) -> TrainHistory:
     """Read what `write_train` wrote. Raises FileError where the file is missing, damaged or something else."""
-    with _unreadable(path), h5py.File(path, "r") as file:
+    with _opened(path) as file:
         if file.attrs.get("train_format_version") != _FORMAT:
             raise FileError(f"{path} is not the history of a train that this version can read", where=str(path))
-        time = np.asarray(file[TIME.name][:], dtype=np.float64)
-        parts = {
-            name: StoredPart(
-                {key: _plain(value) for key, value in group.attrs.items()},
-                {key: np.asarray(group[key][:], dtype=np.float64) for key in group},
-            )
-            for name, group in file.items()
-            if name.startswith((_VEHICLE, _COUPLING))
-        }
-        attributes, text = {key: _plain(value) for key, value in file.attrs.items()}, _text(path, file)
-    columns = {f"{name}/{key}": values for name, part in parts.items() for key, values in part.channels.items()}
-    _refuse(path, faults_of_columns(time, columns))
-    vehicles = tuple(part for name, part in sorted(parts.items()) if name.startswith(_VEHICLE))
-    couplings = tuple(part for name, part in sorted(parts.items()) if name.startswith(_COUPLING))
-    return TrainHistory(str(attributes["name"]), time, vehicles, couplings, attributes, text)
+        return _sound(path, stored_train(file, _text(path, file)))
 
 
 def is_train_history(path: Path) -> bool:
     """Whether the file is the history of a train; False where it cannot be read."""
     try:
+        if other_than_file(path):
+            return False
         with h5py.File(path, "r") as file:
             return "train_format_version" in file.attrs
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 
@@ -158,35 +156,21 @@ def read_history(path: Path) -> History:
 
     Raises FileError when the file is missing, damaged, or not a history that this version can read.
     """
-    with _unreadable(path), h5py.File(path, "r") as file:
-        attributes = {key: _plain(value) for key, value in file.attrs.items()}
+    with _opened(path) as file:
+        attributes = plain_attributes(file)
         _check_format(path, attributes)
         scenario_text = _text(path, file)
-        columns = _columns(path, file)
+        columns = _sound(path, stored_columns(file))
     time = columns.pop(TIME.name)
     _refuse(path, faults_of_columns(time, columns))
     return History(time=time, channels=columns, attributes=attributes, scenario_text=scenario_text)
 
 
-def _columns(path: Path, file: h5py.File) -> dict[str, Vector]:
-    """The time axis and every channel that the file has; what else is in it is left alone."""
-    known = [name for name in file if _is_known(name)]
-    missing = [name for name in (TIME.name, *sorted(NEEDED)) if name not in known]
-    lacks = [f"it lacks the channels {', '.join(missing)}"] if missing else []
-    _refuse(path, [*lacks, *(fault for name in known for fault in faults_of_shape(name, file.get(name)))])
-    return {name: np.asarray(file[name][:], dtype=np.float64) for name in known}
-
-
-def _is_known(name: str) -> bool:
-    try:
-        return name == TIME.name or bool(channel(name))
-    except KeyError:
-        return False
-
-
 def _text(path: Path, file: h5py.File) -> str:
     """The scenario of the run as resolved YAML."""
-    text = file[_SCENARIO][()] if isinstance(file.get(_SCENARIO), h5py.Dataset) else None
+    held = file.get(_SCENARIO)
+    is_text = isinstance(held, h5py.Dataset) and held.shape == () and held.dtype.itemsize <= _LONGEST_TEXT
+    text = held[()] if is_text else None
     _refuse(path, [] if isinstance(text, bytes) else [f"it lacks the text {_SCENARIO}"])
     return str(text, "utf-8") if isinstance(text, bytes) else ""
 
@@ -197,6 +181,13 @@ def _refuse(path: Path, faults: Iterable[str]) -> None:
     if found:
         listed = "; ".join(found[:MOST_SHOWN]) + (f"; and {len(found) - MOST_SHOWN} more" * (len(found) > MOST_SHOWN))
         raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
+
+
+def _sound(path: Path, found: _F | list[str]) -> _F:
+    """What was found in a file, unless that is a list of faults."""
+    if isinstance(found, list):
+        _refuse(path, found)
+    return cast("_F", found)
 
 
 def scenario_text(scenario: "Scenario | TankScenario | TrainScenario") -> str:
@@ -214,6 +205,8 @@ def is_of(path: Path, scenario: "Scenario | TankScenario | TrainScenario", setti
 def inputs_of(path: Path) -> str | None:
     """Settings and scenario of a history, without name and description; None of what is no history of ours."""
     try:
+        if other_than_file(path):
+            return None
         with h5py.File(path, "r") as file:
             return f"{file.attrs.get('settings', '')}\n{_without_words(file[_SCENARIO][()].decode('utf-8'))}"
     except Exception:  # whatever it is, it is no history of ours
@@ -245,15 +238,10 @@ def _write_profile(file: h5py.File, profile: SurfaceProfile) -> None:
 
 def read_surface(path: Path) -> SurfaceProfile | None:
     """The surface along the tank that `write_history` kept; None in a file without it. Raises FileError."""
-    with _unreadable(path), h5py.File(path, "r") as file:
+    with _opened(path) as file:
         if _SURFACE not in file:
             return None
-        names = (f"{_SURFACE}_time", f"{_SURFACE}_place", _SURFACE)
-        time, place, rise = (np.asarray(file[name][:], dtype=np.float64) for name in names)
-        standing = str(file[_SURFACE].attrs["standing"])
-    sound = rise.shape == (time.size, place.size) and all(np.isfinite(one).all() for one in (time, place, rise))
-    _refuse(path, [] if sound and time.size else [f"its {_SURFACE} must be finite and as long as its coordinates"])
-    return SurfaceProfile(time, place, rise, standing)
+        return _sound(path, stored_surface(file, _SURFACE))
 
 
 def _circumstances() -> dict[str, Any]:
@@ -279,22 +267,33 @@ def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
             f"it was written by slosh {attributes.get('program_version', '?')}",
             where=str(path),
         )
-    _refuse(path, faults_of_attributes(attributes))
-
-
-def _plain(value: Any) -> Any:
-    """A root attribute as a plain Python value where it is a single one."""
-    value = value.item() if isinstance(value, np.generic) else value
-    return value.decode("utf-8") if isinstance(value, bytes) else value
+    _refuse(path, faults_of_answers(History.table(), attributes))
 
 
 @contextmanager
-def _unreadable(path: Path) -> Iterator[None]:
-    if not path.exists():
-        raise FileError(f"{path} does not exist", where=str(path))
-    if path.is_dir():
-        raise FileError(f"{path} is a folder; give the history file in it, say {path / 'run.h5'}", where=str(path))
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """The file, open for reading. Raises FileError where it is missing, damaged, or leads to other files."""
     try:
-        yield
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError) as error:
-        raise FileError(f"cannot read {path} as a slosh history (HDF5): {error}", where=str(path)) from error
+        other = other_than_file(path)
+        if other == "a folder":
+            raise FileError(f"{path} is a folder; give the history file in it, say {path / 'run.h5'}", where=str(path))
+        if other:
+            raise FileError(f"{path} is {other}; give a history file (run.h5)", where=str(path))
+        if not os.path.exists(path):
+            raise FileError(f"{path} does not exist", where=str(path))
+        with h5py.File(path, "r") as file:
+            _refuse(path, _faults_of_links(file))
+            yield file
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError) as error:
+        number = getattr(error, "errno", None)
+        reason = os.strerror(number) if number else " ".join(str(error).split())
+        raise FileError(f"cannot read {path} as a slosh history (HDF5): {reason}", where=str(path)) from error
+
+
+def _faults_of_links(group: h5py.Group, depth: int = 2) -> Iterator[str]:
+    """Names that lead to other files, which nobody has checked."""
+    for name in group:
+        if isinstance(group.get(name, getlink=True), h5py.ExternalLink):
+            yield f"its {name} must be in the file itself, but is a link to another one"
+        elif depth > 1 and isinstance(group.get(name), h5py.Group):
+            yield from _faults_of_links(group[name], depth - 1)

@@ -1,7 +1,7 @@
 """A run read back: what its file must hold to be the history of a run, apart from the format it is kept in."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
@@ -9,15 +9,18 @@ import numpy as np
 
 from slosh_cli.arrays import Vector
 from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
-from slosh_cli.results.channels import TIME, WHEELS, wheel
+from slosh_cli.results.channels import TIME, WHEELS, channel, wheel
 from slosh_cli.results.result import Record, Status
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario.scalars import well_formed
 
 _MOST_ROWS: Final = 10_000_000
 """Rows of a history; a run has at most two million."""
-_LARGEST: Final = 1e15
+LARGEST: Final = 1e15
 """Numbers beyond this, in SI units, are of no run."""
+_SMALL: Final = 1_000_000
+_DENSEST: Final = 100
+"""A column of more bytes than `_SMALL` must take at least one of `_DENSEST` of them in its file."""
 
 NEEDED: Final = frozenset(
     {"position", "speed", "car_acceleration", "surface_front", "surface_rear", "liquid_force"}
@@ -51,12 +54,21 @@ class History(Record):
                     object.__setattr__(self, one.name, one.of(self))
 
 
-def faults_of_attributes(attributes: Mapping[str, Any]) -> Iterator[str]:
-    """What is wrong with the root attributes, in words that follow the name of the file."""
-    missing = [one.name for one in History.table() if one.needed and one.name not in attributes]
+def plain_attributes(holder: Any) -> dict[str, Any]:
+    """The attributes of an open file or group, as plain Python values where they are single ones."""
+    found = {}
+    for key, value in holder.attrs.items():
+        single = value.item() if isinstance(value, np.generic) else value
+        found[key] = single.decode("utf-8") if isinstance(single, bytes) else single
+    return found
+
+
+def faults_of_answers(answers: Sequence[Answer], attributes: Mapping[str, Any]) -> Iterator[str]:
+    """What is wrong with the attributes that hold answers, in words that follow the name of what has them."""
+    missing = [one.name for one in answers if one.needed and one.name not in attributes]
     if missing:
         yield f"it lacks the attributes {', '.join(missing)}"
-    for one in History.table():
+    for one in answers:
         if one.name in attributes and not _is_sound(one, attributes[one.name]):
             yield f"its attribute {one.name} must be {_words(one)}, but is {_shown(attributes[one.name])}"
 
@@ -78,7 +90,7 @@ def _are_numbers(one: Answer, value: Any) -> bool:
     kinds = "iu" if one.kind is int else "fiu"
     if found.shape != ((len(WHEELS),) if one.kind == PerWheel else ()) or found.dtype.kind not in kinds:
         return False
-    sound = np.abs(found) < _LARGEST
+    sound = np.abs(found) < LARGEST
     return not one.needed or bool((sound if _is_finite(one) else sound | np.isnan(found)).all())
 
 
@@ -115,26 +127,58 @@ def _value(one: Answer, value: Any) -> Any:
     return one.kind(value)
 
 
+def stored_columns(file: Any) -> dict[str, Vector] | list[str]:
+    """The time axis and every channel that an open file has, or what is wrong with these; all else is left alone."""
+    known = [name for name in file if name == TIME.name or _is_channel(name)]
+    missing = [name for name in (TIME.name, *sorted(NEEDED)) if name not in known]
+    faults = [f"it lacks the channels {', '.join(missing)}"] if missing else []
+    faults += [fault for name in known for fault in faults_of_shape(name, file.get(name))]
+    return faults or {name: np.asarray(file[name][:], dtype=np.float64) for name in known}
+
+
+def _is_channel(name: str) -> bool:
+    try:
+        return bool(channel(name))
+    except KeyError:
+        return False
+
+
 def faults_of_shape(name: str, dataset: Any) -> Iterator[str]:
     """What keeps a dataset, not read yet, from being a column of numbers."""
     shape, dtype = getattr(dataset, "shape", None), getattr(dataset, "dtype", None)
-    if shape is None or dtype is None:
-        yield f"its {name} must be a dataset, but is a group"
+    if dataset is None:
+        yield f"it lacks its {name}"
+    elif shape is None or dtype is None:
+        yield f"its {name} must be a dataset with rows, but is a group, a link or empty"
     elif len(shape) != 1 or dtype.kind not in "fiu":
         yield f"its {name} must be a column of numbers, but has the shape {shape} and the type {dtype}"
     elif not 0 < shape[0] <= _MOST_ROWS:
         yield f"its {name} must have from 1 to {_MOST_ROWS} rows, but has {shape[0]}"
+    elif not is_there(dataset):
+        yield f"its {name} must be in the file itself, all {shape[0]} rows of it"
 
 
-def faults_of_columns(time: Vector, channels: Mapping[str, Vector]) -> Iterator[str]:
+def is_there(dataset: Any) -> bool:
+    """Whether the numbers are in the file, and not in others; nor is there a vast column with next to nothing in it."""
+    if dataset.is_virtual or dataset.external:
+        return False
+    return bool(dataset.nbytes <= max(_SMALL, _DENSEST * dataset.id.get_storage_size()))
+
+
+def faults_of_columns(time: Vector, channels: Mapping[str, Vector], needed: Collection[str] = NEEDED) -> Iterator[str]:
     """What is wrong with the numbers of a history: rows, times that fall, values that are no numbers."""
-    if not np.isfinite(time).all() or (np.diff(time) < 0.0).any():
+    if not _are_sound(time) or (np.diff(time) < 0.0).any():
         yield f"its {TIME.name} must be finite and must not fall"
     for name, values in channels.items():
         if values.shape != time.shape:
             yield f"its channel {name} is not as long as the time axis ({values.size} rows for {time.size})"
-        elif name in NEEDED and not np.isfinite(values).all():
+        elif name in needed and not _are_sound(values):
             yield f"its channel {name} must be finite"
+
+
+def _are_sound(values: Vector) -> bool:
+    """Whether all numbers are finite, and such as a run can have."""
+    return bool((np.abs(values) < LARGEST).all())
 
 
 def _shown(value: Any) -> str:

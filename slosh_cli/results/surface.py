@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from slosh_cli.arrays import Matrix, Vector
 from slosh_cli.results.channels import slosh_amplitude
+from slosh_cli.results.stored import LARGEST, is_there
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario
 
 _PLACES: Final = 33
 _MOST_TIMES: Final = 1000
+_MOST_PLACES: Final = 3000
+"""Of times, and of places, in a file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,3 +58,17 @@ def surface_profile(scenario: Scenario, time: Vector, channels: Mapping[str, Vec
     if not np.allclose(rise[:, [0, -1]], walls, rtol=1e-9, atol=1e-9, equal_nan=True):
         return None
     return SurfaceProfile(time[rows], place, rise, standing)
+
+
+def stored_surface(file: Any, name: str) -> SurfaceProfile | list[str]:
+    """The surface in the datasets `name` of an open file, or what is wrong with it."""
+    held = [file.get(one) for one in (f"{name}_time", f"{name}_place", name)]
+    shapes: list[Any] = [getattr(one, "shape", None) for one in held]
+    kinds = {getattr(getattr(one, "dtype", None), "kind", "") for one in held}
+    columns = all(shape is not None and len(shape) == 1 and 0 < shape[0] <= _MOST_PLACES for shape in shapes[:2])
+    if not columns or shapes[2] != (*shapes[0], *shapes[1]) or not kinds <= set("fiu") or not all(map(is_there, held)):
+        return [f"its {name} must be numbers in the file itself, as many as it has times and places"]
+    time, place, rise = (np.asarray(one[:], dtype=np.float64) for one in held)
+    if not all((np.abs(values) < LARGEST).all() for values in (time, place, rise)) or (np.diff(time) < 0.0).any():
+        return [f"its {name} must be finite, and its times must not fall"]
+    return SurfaceProfile(time, place, rise, str(held[2].attrs.get("standing", "")))

@@ -32,11 +32,12 @@ class VehicleResult(Answers):
     # fmt: off
     name: str = derived("", "name of the vehicle's scenario", Place.NAME, given="name", shown=_TOLD)
     onset_s: float = derived(
-        "s", "when the brake wave reaches the vehicle", Place.CONDITIONS, given="braking.onset", shown=_TOLD)
-    distance_m: float = computed("m", "way of the vehicle since its onset", Place.DISTANCE, shown=_TOLD)
+        "s", "when the brake wave reaches the vehicle", Place.CONDITIONS, given="braking.onset", shown=_TOLD,
+        needed=True)
+    distance_m: float = computed("m", "way of the vehicle since its onset", Place.DISTANCE, shown=_TOLD, needed=True)
     liquid_model: str = derived(
         "", "model of the load: rigid, modal or shallow-water", Place.CONDITIONS, given="tank.liquid.model",
-        shown=_TOLD, column="liquid")
+        shown=_TOLD, column="liquid", needed=True)
     max_surface_m: float = computed("m", "largest rise of the free surface at an end wall", Place.SURFACE, shown=_TOLD)
     surface_limit_m: float = computed("m", "room above the still surface", Place.SURFACE, shown=_TOLD)
     min_wheel_load_N: PerWheel = computed("N", "least load since the onset", Place.WHEELS, shown=_TOLD)
@@ -66,8 +67,8 @@ class CouplingResult(Answers):
     `compression` (n,) m are its histories."""
 
     # fmt: off
-    max_compression_N: float = computed("N", "largest compressive force", shown=_TOLD)
-    max_tension_N: float = computed("N", "largest tensile force", shown=_TOLD)
+    max_compression_N: float = computed("N", "largest compressive force", shown=_TOLD, needed=True)
+    max_tension_N: float = computed("N", "largest tensile force", shown=_TOLD, needed=True)
     max_compression_m: float = computed("m", "largest compression", shown=_TOLD)
     max_tension_m: float = computed("m", "largest extension", shown=_TOLD)
     max_compression_s: float = computed("s", "when the compressive force was largest", shown=~Shown.JSON)
@@ -82,11 +83,12 @@ class TrainResult(Answers):
     """The stop of a train. `time` (n,) s is that of all histories."""
 
     # fmt: off
-    name: str = derived("", "name of the train", Place.NAME, given="name", shown=_TOLD)
-    status: Status = computed("", "how the run ended", Place.STATUS, shown=_EVERYWHERE, line=Told(1, "status"))
+    name: str = derived("", "name of the train", Place.NAME, given="name", shown=_TOLD, needed=True)
+    status: Status = computed(
+        "", "how the run ended", Place.STATUS, shown=_EVERYWHERE, needed=True, line=Told(1, "status"))
     braking_distance_m: float | None = computed(
         "m", "way of the first vehicle from its onset to the train's stop", Place.DISTANCE, shown=_EVERYWHERE,
-        line=Told(2, "braking distance of the first vehicle", ".2f", "m"))
+        needed=True, line=Told(2, "braking distance of the first vehicle", ".2f", "m"))
     braking_time_s: float | None = computed(
         "s", "from the first vehicle's onset to the train's stop", Place.DISTANCE, shown=_EVERYWHERE,
         line=Told(3, "braking time", ".2f", "s"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from copy import deepcopy
@@ -189,7 +190,7 @@ def _source(path: str | Path) -> Path:
     """The file itself; or the packaged scenario of that name, ``paper-80-liquid``, where there is no such file."""
     file = Path(path)
     is_name = file.name == str(path) and not file.suffix
-    return packaged_scenarios().get(file.name, file) if is_name and not file.exists() else file
+    return packaged_scenarios().get(file.name, file) if is_name and not os.path.exists(file) else file
 
 
 def _is_writable(document: Document, key: str, place: str) -> bool:

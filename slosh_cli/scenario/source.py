@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -40,8 +41,11 @@ def text_of(path: Path) -> str:
 def bytes_of(path: Path, kind: Kind) -> bytes:
     """All of a file; ScenarioError where there is none, or too much of it."""
     try:
-        if path.is_dir():
-            raise unreadable(path, "must be a file", "a folder", f"name the {kind.noun} file in it")
+        other = other_than_file(path)
+        if other:
+            folder = other == "a folder"
+            fix = f"name the {kind.noun} file in it" if folder else f"save the {kind.noun} to a file and name that"
+            raise unreadable(path, "must be a file", other, fix)
         with path.open("rb") as stream:
             raw = stream.read(kind.most_bytes + 1)
     except FileNotFoundError:
@@ -53,6 +57,19 @@ def bytes_of(path: Path, kind: Kind) -> bytes:
         given, fix = f"more than {kind.most_bytes} bytes", f"name a {kind.noun} file"
         raise unreadable(path, f"must have at most {kind.most_bytes} bytes", given, fix)
     return raw
+
+
+def other_than_file(path: Path) -> str:
+    """What is at the path in place of a file, in words; empty for a file and for nothing at all. Raises OSError.
+
+    A pipe may never end, and can be read once only.
+    """
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return ""
+    kinds = {stat.S_ISREG: "", stat.S_ISDIR: "a folder", stat.S_ISFIFO: "a pipe", stat.S_ISSOCK: "a socket"}
+    return next((words for is_kind, words in kinds.items() if is_kind(mode)), "a device")
 
 
 def unreadable(path: Path, rule: str, given: str, fix: str, line: int | None = None) -> ScenarioError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -237,7 +238,7 @@ def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> P
     """The file of a vehicle's scenario; None, with a problem, where there is none or it describes a train."""
     where, beside = ("vehicles", number, "scenario"), path.parent / entry.scenario
     found = beside
-    if not beside.is_file():
+    if not os.path.isfile(beside):
         try:
             found = find_packaged(entry.scenario)
         except UsageError as error:

@@ -10,6 +10,7 @@ liquid: [modal, rigid]        # default: the scenario's own model and rigid
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -139,7 +140,7 @@ def _base(path: Path, document: Document) -> Path | None:
     if not isinstance(given, str) or not given:
         return None
     beside = path.parent / given
-    if beside.exists():
+    if os.path.exists(beside):
         return beside
     try:
         return find_packaged(given)
