@@ -8,12 +8,13 @@ LOCKED := $(PIP) install --require-hashes --only-binary :all:
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock campaign clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
 	@echo "make test      the tests (a few minutes; the first call also sets up .venv)"
 	@echo "make test-all  the tests with the slow studies"
+	@echo "make campaign  random wagons and trains, judged: N=1000 TRAINS=50"
 	@echo "make bench     slosh beside other ways of computing a stop, in ratios (a quarter of an hour); results in outputs/bench/"
 	@echo "make bench-batch  ten thousand stops, make bench-docs: put the last results into docs/speed.md"
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
@@ -39,6 +40,12 @@ test: $(READY)
 
 test-all: $(READY)
 	$(BIN)/python -m pytest
+
+# a fourth of them are compared with finer, stronger and mirrored runs; CAMPAIGN='--seed wagon:17' repeats one
+N ?= 1000
+TRAINS ?= 50
+campaign: $(READY)
+	nice $(BIN)/python -m tests.campaign --wagons $(N) --trains $(TRAINS) $(CAMPAIGN)
 
 # `make test` never runs the benchmarks: their files are not named test_*
 PARTS ?= contestants floor scaling startup liquids
