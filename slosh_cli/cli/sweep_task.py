@@ -55,6 +55,8 @@ def _compute(task: Task, work: "OpenStudy") -> bool:
     planned = work.planned
     reused = f", {planned.reused} of them finished before" if planned.reused else ""
     note(grid_words(task.study) + reused)
+    for warning in work.warnings:
+        warn(warning)
     if not planned.open:
         return False
     cancel = threading.Event()
@@ -115,6 +117,8 @@ def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
     from slosh_cli.results.result import Status
 
     keeping = Keeping()
+    if work.journal.restored:
+        warn(f"{work.journal.path} was removed while the study ran; it has been written anew with every finished stop")
     counts = Counter(Status(row["status"]) for row in work.rows())
     written, failed = counts.total(), sum(counts[status] for status in counts if status.is_failure)
     table = work.keep_table(keeping)
