@@ -7,12 +7,12 @@ result = simulate(load_scenario("paper_80.yaml"))
 docs/python.md shows everything that is offered here.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
 from slosh_cli.version import __version__
 
+TYPE_CHECKING = False  # the module typing takes longer to load than all that stands here
 if TYPE_CHECKING:
+    from typing import Any
+
     from slosh_cli.application.excitation import excite
     from slosh_cli.application.finding import find, optimum
     from slosh_cli.application.plotting import plot
@@ -49,10 +49,12 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Import what is asked for when it is asked for: the command line must not wait for the solver."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     value = getattr(import_module(_HOMES[name]), name)
     globals()[name] = value
     return value

@@ -51,6 +51,13 @@ class OpenStudy:
         """The study's folder."""
         return self.planned.folder
 
+    @property
+    def warnings(self) -> list[str]:
+        """What to know of the stops that were finished before."""
+        damaged = len(self.journal.unsound)
+        rows = "1 stop does" if damaged == 1 else f"{damaged} stops do"
+        return [f"{rows} not match the checksum in {self.journal.path}: computed again"] if damaged else []
+
     def begin_session(self) -> int:
         """Note in the journal who computes; returns how many stops in it are by another build of the solver."""
         from slosh_cli.compiled import SOURCES
@@ -169,7 +176,7 @@ class StudyResult:
 
     reused: stops that an earlier study in the same folder had computed. claims: what became of the paper's claims, by
     model of the liquid, where the study is its Figure 3. files: where the table and the figures lie, if they were to be
-    kept; warnings say what could not be.
+    kept; warnings say what could not be, and what of an earlier study could not be used.
     """
 
     study: Study
@@ -234,6 +241,7 @@ def sweep(
     keeping, files = Keeping(), {}
     place = nullcontext(str(folder)) if folder is not None else tempfile.TemporaryDirectory(prefix="slosh-")
     with place as name, opened(study, Path(name), fresh=fresh) as work:
+        keeping.failures += work.warnings
         if work.planned.open:
             with workers_for(len(work.planned.open), threads, cluster) as workers:
                 work.begin_session()

@@ -5,9 +5,13 @@ import gc
 import os
 from collections.abc import Sequence
 
+from slosh_cli.cli.interrupts import catch_signals
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line with `arguments` (default: those of the process); returns the exit code."""
+    if arguments is None:  # the process is ours
+        catch_signals()
     _hurry()
     _draw_without_windows()
     from slosh_cli.cli.shell import execute

@@ -12,6 +12,7 @@ import typer
 
 from slosh_cli.cli.app import tree
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.interrupts import close_in_order, end_with
 from slosh_cli.cli.output import close_stdout, complain, flush_streams, open_streams, refused, say_json
 from slosh_cli.errors import ScenarioError, SloshError, shortened
 
@@ -27,6 +28,7 @@ def execute(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     before_dashes = words[: words.index("--")] if "--" in words else words
     open_streams()
+    close_in_order()
     _forgive_encodings()
     try:
         code = _run(words)
@@ -34,7 +36,9 @@ def execute(arguments: Sequence[str] | None = None) -> int:
         code = _report(error, as_json="--json" in before_dashes)
     except KeyboardInterrupt:
         code = _interrupted(as_json="--json" in before_dashes)
-    return _told(code)
+    code = _told(code)
+    end_with(code)
+    return code
 
 
 def _told(code: int) -> int:

@@ -9,10 +9,11 @@ from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.cli.interrupts import note_heard
 from slosh_cli.cli.keeping import told
 from slosh_cli.cli.output import note, say, say_json, warn
 from slosh_cli.report.study_pages import View, pages
@@ -20,6 +21,8 @@ from slosh_cli.report.study_pages import View, pages
 if TYPE_CHECKING:
     from slosh_cli.application.studies import OpenStudy
     from slosh_cli.study.plan import Study
+
+_ENDINGS: Final = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,8 @@ def _compute(task: Task, work: "OpenStudy") -> bool:
     planned = work.planned
     reused = f", {planned.reused} of them finished before" if planned.reused else ""
     note(grid_words(task.study) + reused)
+    for warning in work.warnings:
+        warn(warning)
     if not planned.open:
         return False
     cancel = threading.Event()
@@ -95,13 +100,14 @@ def _interruptible(cancel: threading.Event) -> Iterator[threading.Event]:
     interrupted = threading.Event()
 
     def stop(number: int, _frame: object) -> None:
+        note_heard()
         interrupted.set()
         cancel.set()
         signal.signal(number, earlier[number])
 
     earlier: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():
-        earlier = {int(number): signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        earlier = {int(number): signal.signal(number, stop) for number in _ENDINGS}
     try:
         yield interrupted
     finally:
@@ -115,6 +121,8 @@ def _conclude(task: Task, work: "OpenStudy", *, interrupted: bool) -> ExitCode:
     from slosh_cli.results.result import Status
 
     keeping = Keeping()
+    if work.journal.restored:
+        warn(f"{work.journal.path} was removed while the study ran; it has been written anew with every finished stop")
     counts = Counter(Status(row["status"]) for row in work.rows())
     written, failed = counts.total(), sum(counts[status] for status in counts if status.is_failure)
     table = work.keep_table(keeping)

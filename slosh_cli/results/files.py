@@ -17,6 +17,9 @@ _PART: Final = re.compile(r"\..*[0-9a-f]{8}\.part")
 _ABANDONED: Final = 86400.0
 """Seconds after which an unfinished part belongs to a process that was killed."""
 
+_unfinished: Final[set[Path]] = set()
+"""Files and folders of this process that nobody may take for whole."""
+
 
 class FileError(SloshError):
     """A file that cannot be written, or read for what it should be; `where` is its path."""
@@ -35,12 +38,14 @@ def replacing(path: Path) -> Iterator[Path]:
     with _refusals(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+        _unfinished.add(temporary)
         try:
             yield temporary
             _to_disk(temporary)
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
+            _unfinished.discard(temporary)
         _to_disk(path.parent)
 
 
@@ -55,6 +60,7 @@ def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
     with _refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
         stage = folder / f".{secrets.token_hex(4)}.part"
+        _unfinished.add(stage)
         stage.mkdir()
         try:
             yield stage
@@ -68,7 +74,15 @@ def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
                 file.replace(folder / file.name)
         finally:
             shutil.rmtree(stage, ignore_errors=True)
+            _unfinished.discard(stage)
         _to_disk(folder)
+
+
+def remove_unfinished() -> None:
+    """Take away what this process has not finished: it is about to end, whatever it is doing."""
+    for path in tuple(_unfinished):
+        with suppress(OSError):
+            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
 
 
 def write_text(text: str, path: Path) -> None:
