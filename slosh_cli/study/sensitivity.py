@@ -29,6 +29,7 @@ SMALL: Final[Mapping[str, float]] = {DISTANCE: 5e-3, UNLOADING: 0.01, LOCK: 0.3}
 _TABLE: Final = Path(__file__).resolve().parent.parent / "presets" / "plausible.yaml"
 _ANY: Final = {"times": [0.9, 1.1], "reason": "assumed; 10 % where nothing is known of it"}
 _MODAL: Final = "tank.liquid.damping_ratio"
+_FRICTIONS: Final = ("braking.blocks.friction", "braking.discs.friction")
 _INTERVAL: Final = 100.0
 """Output interval in s of stops whose history nobody keeps."""
 
@@ -38,7 +39,7 @@ class Doubt:
     """A value of the scenario and how far it may be off: key path, texts of the value itself and of both ends.
 
     `standing`: default, assumed, published, measured (of a preset) or given (by the file). `ends` are what the scenario
-    takes at both of them: SI numbers or words.
+    takes at both of them: SI numbers or words. They are put at `place`, the key itself where it is empty.
     """
 
     key: str
@@ -48,6 +49,7 @@ class Doubt:
     standing: str
     reason: str
     ends: tuple[Any, Any]
+    place: str = ""
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def effects(
     for number, doubt in enumerate(found):
         for end, value in enumerate(doubt.ends):
             try:
-                varied = scenario.with_({doubt.key: value})
+                varied = scenario.with_({doubt.place or doubt.key: value})
             except ScenarioError as error:
                 refused[number] = error.problems[0].rule if error.problems else str(error)
                 continue
@@ -165,6 +167,8 @@ def _doubt(scenario: Scenario, data: Mapping[str, Any], key: str, entry: Mapping
     own, spot = value_at(data, path), Spot(part=Scenario).at(data, path)
     standing, reason = _standing(scenario, data, key), entry["reason"]
     if spot is not None and spot.short is not None and own is not None:
+        if "from" not in entry:
+            return _friction(scenario, key, standing, entry) if key in _FRICTIONS else None  # a word of a preset
         words = (word for word, one in spot.short.known.items() if plain_data(one, as_text=False) == own)
         low, high = entry["from"], entry["to"]
         return Doubt(key, next(words, "its own"), low, high, standing, reason, (low, high))
@@ -178,3 +182,24 @@ def _doubt(scenario: Scenario, data: Mapping[str, Any], key: str, entry: Mapping
     unit = f" {spot.leaf.unit}" if isinstance(spot.leaf, Quantity) else ""
     texts = [f"{shown(float(f'{value:.6g}'))}{unit}" for value in (own, *ends)]
     return Doubt(key, texts[0], texts[1], texts[2], standing, reason, (ends[0], ends[1]))
+
+
+def _friction(scenario: Scenario, key: str, standing: str, entry: Mapping[str, Any]) -> Doubt:
+    """The doubt of a friction: points are scaled; a law, which depends on force and speed, at its arm.
+
+    Blocks are discs that rub at the radius of the wheel, to the last digit, so a larger arm is a larger friction.
+    """
+    rubbing, wheel_radius = scenario.braking.rubbing, scenario.wagon.wheelset.wheel_radius
+    assert rubbing is not None
+    law, times = rubbing.friction, entry["times"]
+    told = [f"{factor:g} times" for factor in times]
+    if law.law == "table":
+        ends = [[[speed, value * factor] for speed, value in law.points] for factor in times]
+        if len(law.points) > 1:
+            return Doubt(key, "its points", told[0], told[1], standing, entry["reason"], (ends[0], ends[1]))
+        own, low, high = (shown(float(f"{law.points[0][1] * factor:.6g}")) for factor in (1.0, *times))
+        return Doubt(key, own, low, high, standing, entry["reason"], (ends[0], ends[1]))
+    faces = {"faces": rubbing.count, "force": rubbing.force, "friction": law.law}
+    discs = [faces | {"radius": factor * rubbing.arm(wheel_radius)} for factor in times]
+    ends_at = (discs[0], discs[1])
+    return Doubt(key, law.law, told[0], told[1], standing, entry["reason"], ends_at, "braking.discs")
