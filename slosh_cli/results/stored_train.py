@@ -22,7 +22,7 @@ _PARTS: Final[Mapping[str, tuple[tuple[Answer, ...], tuple[str, ...]]]] = {
 
 
 def stored_train(file: Any, text: str) -> TrainHistory | list[str]:
-    """The train of an open file and its scenario, or what is wrong with it in words that follow the name of the file."""
+    """The train of an open file, with its scenario, or what is wrong in words that follow the name of the file."""
     attributes = plain_attributes(file)
     names = {kind: sorted(name for name in file if name.startswith(kind)) for kind in _PARTS}
     faults = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -13,7 +13,6 @@ from slosh_cli.errors import ScenarioError
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.leaves import Quantity
 from slosh_cli.scenario.plain_data import plain_data
-from slosh_cli.scenario.schema_friction import FrictionTable
 from slosh_cli.scenario.standing import YOURS, standings
 from slosh_cli.scenario.tree import Spot, value_at
 from slosh_cli.scenario.units import shown
@@ -30,6 +29,7 @@ SMALL: Final[Mapping[str, float]] = {DISTANCE: 5e-3, UNLOADING: 0.01, LOCK: 0.3}
 _TABLE: Final = Path(__file__).resolve().parent.parent / "presets" / "plausible.yaml"
 _ANY: Final = {"times": [0.9, 1.1], "reason": "assumed; 10 % where nothing is known of it"}
 _MODAL: Final = "tank.liquid.damping_ratio"
+_FRICTIONS: Final = ("braking.blocks.friction", "braking.discs.friction")
 _INTERVAL: Final = 100.0
 """Output interval in s of stops whose history nobody keeps."""
 
@@ -38,7 +38,8 @@ _INTERVAL: Final = 100.0
 class Doubt:
     """A value of the scenario and how far it may be off: key path, texts of the value itself and of both ends.
 
-    `standing` is that of `standings`. `ends` are what the scenario takes at both of them: SI numbers or words.
+    `standing` is that of `standings`. `ends` are what the scenario takes at both of them: SI numbers or words. They are
+    put at `place`, the key itself where it is empty.
     """
 
     key: str
@@ -48,6 +49,7 @@ class Doubt:
     standing: str
     reason: str
     ends: tuple[Any, Any]
+    place: str = ""
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ def doubts(scenario: Scenario) -> Iterator[Doubt]:
         if key == _MODAL and scenario.tank.liquid.model != "modal":
             continue
         standing = next((one.standing for name, one in known.items() if f"{name}.".startswith(f"{key}.")), YOURS)
-        found = _doubt(data, key, entry, standing)
+        found = _doubt(scenario, data, key, entry, standing)
         if found is not None:
             yield found
 
@@ -99,7 +101,7 @@ def effects(
     for number, doubt in enumerate(found):
         for end, value in enumerate(doubt.ends):
             try:
-                varied = scenario.with_({doubt.key: value})
+                varied = scenario.with_({doubt.place or doubt.key: value})
             except ScenarioError as error:
                 refused[number] = error.problems[0].rule if error.problems else str(error)
                 continue
@@ -144,19 +146,19 @@ def _plausible() -> dict[str, dict[str, Any]]:
     return {str(key): dict(entry) for key, entry in data.items()}
 
 
-def _doubt(data: Mapping[str, Any], key: str, entry: Mapping[str, Any], standing: str) -> Doubt | None:
+def _doubt(
+    scenario: Scenario, data: Mapping[str, Any], key: str, entry: Mapping[str, Any], standing: str
+) -> Doubt | None:
     """The doubt of a key; None where the scenario has no such number. `data` is the scenario as plain data."""
     path = tuple(key.split("."))
     own, spot = value_at(data, path), Spot(part=Scenario).at(data, path)
     reason = entry["reason"]
-    if spot is not None and spot.short is not None and own is not None and "from" in entry:
+    if spot is not None and spot.short is not None and own is not None:
+        if "from" not in entry:
+            return _friction(scenario, key, standing, entry) if key in _FRICTIONS else None  # a word of a preset
         words = (word for word, one in spot.short.known.items() if plain_data(one, as_text=False) == own)
         low, high = entry["from"], entry["to"]
         return Doubt(key, next(words, "its own"), low, high, standing, reason, (low, high))
-    if "times" in entry and isinstance(own, Mapping) and own.get("law") == FrictionTable.model_fields["law"].default:
-        tables = [_scaled(own["points"], times) for times in (1.0, *entry["times"])]
-        texts = [" ... ".join(dict.fromkeys(shown(one[end][1]) for end in (0, -1))) for one in tables]
-        return Doubt(key, texts[0], texts[1], texts[2], standing, reason, (tables[1], tables[2]))
     if spot is None or spot.leaf is None or not isinstance(own, float) or ("times" in entry and own == 0.0):
         return None
     if "times" in entry:
@@ -169,6 +171,22 @@ def _doubt(data: Mapping[str, Any], key: str, entry: Mapping[str, Any], standing
     return Doubt(key, texts[0], texts[1], texts[2], standing, reason, (ends[0], ends[1]))
 
 
-def _scaled(points: Sequence[Sequence[Any]], times: float) -> list[list[float]]:
-    """Points of speed (m/s) and friction with the friction `times` as large."""
-    return [[float(speed), float(f"{friction * times:.6g}")] for speed, friction in points]
+def _friction(scenario: Scenario, key: str, standing: str, entry: Mapping[str, Any]) -> Doubt:
+    """The doubt of a friction: points are scaled; a law, which depends on force and speed, at its arm.
+
+    Blocks are discs that rub at the radius of the wheel, to the last digit, so a larger arm is a larger friction.
+    """
+    rubbing, wheel_radius = scenario.braking.rubbing, scenario.wagon.wheelset.wheel_radius
+    assert rubbing is not None
+    law, times = rubbing.friction, entry["times"]
+    told = [f"{factor:g} times" for factor in times]
+    if law.law == "table":
+        ends = [[[speed, value * factor] for speed, value in law.points] for factor in times]
+        if len(law.points) > 1:
+            return Doubt(key, "its points", told[0], told[1], standing, entry["reason"], (ends[0], ends[1]))
+        own, low, high = (shown(float(f"{law.points[0][1] * factor:.6g}")) for factor in (1.0, *times))
+        return Doubt(key, own, low, high, standing, entry["reason"], (ends[0], ends[1]))
+    faces = {"faces": rubbing.count, "force": rubbing.force, "friction": law.law}
+    discs = [faces | {"radius": factor * rubbing.arm(wheel_radius)} for factor in times]
+    ends_at = (discs[0], discs[1])
+    return Doubt(key, law.law, told[0], told[1], standing, entry["reason"], ends_at, "braking.discs")

@@ -12,6 +12,7 @@ from slosh_cli.application.stop import simulate
 from slosh_cli.errors import UsageError
 from slosh_cli.scenario import Scenario, load_scenario
 from slosh_cli.study.sensitivity import DISTANCE, LOCK, SMALL, UNLOADING, Doubt, Effect, doubts
+from slosh_cli.wagon.torque import brake_torque
 
 _RIGID = ("tank.liquid.model=rigid", "solver.tolerance=1e-3", "tank.coefficients=computed")
 _WORN = Doubt("contact.kalker_c11", "4", "3", "5", "yours", "wear", (3.0, 5.0))
@@ -54,8 +55,60 @@ def test_the_values_of_a_brake_from_a_preset_go_up_and_down() -> None:
     told = {one.key: one for one in doubts(load_scenario("tank-wagon", [*_RIGID, braking]))}
     friction = told["braking.blocks.friction"]
     assert (friction.own, friction.low, friction.high, friction.standing) == ("0.27", "0.216", "0.324", "assumed")
-    assert friction.ends == ([[0.0, 0.216]], [[0.0, 0.324]])
+    assert [points[0][1] for points in friction.ends] == pytest.approx([0.216, 0.324])
     assert told["braking.application.time_95"].ends == pytest.approx((3.6, 4.4))
+
+
+_TWO = {"count": 2, "force": "10 kN"}
+_BRAKES = [
+    ({"use": "k-blocks"}, "blocks", "0.27", ("0.216", "0.324")),
+    ({"use": "disc-brake"}, "discs", "0.35", ("0.2975", "0.4025")),
+    (
+        {"blocks": {"count": 2, "force": "10 kN", "friction": "composite"}},
+        "blocks",
+        "composite",
+        ("0.8 times", "1.2 times"),
+    ),
+    (
+        {"blocks": {"count": 2, "force": "10 kN", "friction": [["0 km/h", 0.3], ["90 km/h", 0.2]]}},
+        "blocks",
+        "its points",
+        (),
+    ),
+]
+
+
+@pytest.mark.parametrize(("brake", "kind", "own", "ends"), _BRAKES)
+def test_friction_of_a_brake_is_varied(
+    stop: Scenario, brake: Mapping[str, Any], kind: str, own: str, ends: tuple[str, ...]
+) -> None:
+    """Coefficient, points and law: the torque at both ends is the own one times what the table says.
+
+    A word that a preset assumes, such as the position P, has no ends.
+    """
+    braked = stop.with_({f"braking.{key}": value for key, value in brake.items()})
+    told = {one.key: one for one in doubts(braked)}
+    friction = told[f"braking.{kind}.friction"]
+    assert friction.own == own
+    assert not ends or (friction.low, friction.high) == ends
+    for end, factor in zip(friction.ends, (0.85, 1.15) if kind == "discs" else (0.8, 1.2), strict=True):
+        varied = braked.with_({friction.place or friction.key: end})
+        for speed in (0.0, 5.0, 25.0):
+            torque = factor * brake_torque(braked, speed, 0.7)
+            assert brake_torque(varied, speed, 0.7) == pytest.approx(torque, rel=1e-12)
+    assert "braking.application" not in told
+
+
+@pytest.mark.parametrize(
+    ("brake", "key"),
+    [
+        ("braked_weight={percentage: 80, speed: 100 km/h}", "braked_weight.percentage"),
+        ("deceleration=0.6 m/s^2", "deceleration"),
+    ],
+)
+def test_a_brake_without_torque_is_varied_too(stop: Scenario, brake: str, key: str) -> None:
+    told = {one.key for one in doubts(load_scenario("tank-wagon", [*_RIGID, f"braking.{brake}"]))}
+    assert f"braking.{key}" in told
 
 
 def test_effects_are_those_of_the_stop_itself(stop: Scenario, found: Sensitivity) -> None:
