@@ -1,9 +1,10 @@
 """A run read back: what its file must hold to be the history of a run, apart from the format it is kept in."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from slosh_cli.results.channels import TIME, WHEELS, wheel
 from slosh_cli.results.result import Record, Status
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario.scalars import well_formed
+
+if TYPE_CHECKING:
+    from slosh_cli.results.surface import SurfaceProfile
 
 _MOST_ROWS: Final = 10_000_000
 """Rows of a history; a run has at most two million."""
@@ -24,6 +28,22 @@ NEEDED: Final = frozenset(
     | {wheel(i, quantity) for i in WHEELS for quantity in ("speed", "creepage", "normal_force")}
 )
 """Channels that figures and reports cannot do without."""
+
+
+EXCITED: Final = frozenset({"deceleration", "liquid_force", "surface_front", "surface_rear"})
+"""Channels of a tank alone that its replay cannot do without."""
+
+
+@dataclass(frozen=True, eq=False)
+class StoredExcitation:
+    """An excitation of a tank alone, read back: its `channels` at `time` (n,) s, the scenario as resolved YAML; the
+    `surface` along the tank has its places from the rear end wall, and there is none in files of earlier versions."""
+
+    name: str
+    time: Vector
+    channels: Mapping[str, Vector]
+    surface: "SurfaceProfile | None"
+    scenario_text: str
 
 
 class History(Record):
@@ -126,14 +146,14 @@ def faults_of_shape(name: str, dataset: Any) -> Iterator[str]:
         yield f"its {name} must have from 1 to {_MOST_ROWS} rows, but has {shape[0]}"
 
 
-def faults_of_columns(time: Vector, channels: Mapping[str, Vector]) -> Iterator[str]:
+def faults_of_columns(time: Vector, channels: Mapping[str, Vector], needed: Collection[str] = NEEDED) -> Iterator[str]:
     """What is wrong with the numbers of a history: rows, times that fall, values that are no numbers."""
     if not np.isfinite(time).all() or (np.diff(time) < 0.0).any():
         yield f"its {TIME.name} must be finite and must not fall"
     for name, values in channels.items():
         if values.shape != time.shape:
             yield f"its channel {name} is not as long as the time axis ({values.size} rows for {time.size})"
-        elif name in NEEDED and not np.isfinite(values).all():
+        elif name in needed and not np.isfinite(values).all():
             yield f"its channel {name} must be finite"
 
 
