@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from slosh_cli.application.input_tables import inputs_table
-from slosh_cli.errors import ScenarioError
-from slosh_cli.report.html import page_table, page_text, plain_numbers
-from slosh_cli.results.channels import WHEELS, wheel
-from slosh_cli.results.files import FileError, try_targets, write_text
+from slosh_cli.application.replay import replay_data, surface_words
+from slosh_cli.report.html import page_table, page_text
+from slosh_cli.results.files import FileError, write_text
 
 if TYPE_CHECKING:
-    from slosh_cli.arrays import Integers
     from slosh_cli.results.stored import History
-    from slosh_cli.results.surface import SurfaceProfile
-    from slosh_cli.scenario import Scenario
 
-_MOST_ROWS: Final = 1000
-_CHARTS: Final = (
-    ("Speed, km/h", 3.6, ("speed",)),
-    ("Normal force of each wheel, kN", 1e-3, tuple(wheel(i, "normal_force") for i in WHEELS)),
-    ("Circumferential speed of each wheel, km/h", 3.6, tuple(wheel(i, "speed") for i in WHEELS)),
-    ("Rise of the surface at the end walls, m", 1.0, ("surface_front", "surface_rear")),
-    ("Force of the liquid on the tank, kN", 1e-3, ("liquid_force",)),
-)
 _PROVENANCE: Final = ("program", "program_version", "created", "python_version", "numpy_version", "numba_version")
-_LOCKED_SPEED: Final = 1e-3
 
 
 def write_report(source: str | Path, target: str | Path | None = None) -> Path:
@@ -50,45 +37,20 @@ def write_report(source: str | Path, target: str | Path | None = None) -> Path:
     return file
 
 
-def animate(source: str | Path, target: str | Path | None = None) -> Path:
-    """Write the replay of a history file as a GIF, or an MP4; returns its file, default animation.gif beside it.
-
-    It appears whole or not at all. Raises FileError for a source that is no run, and for another kind of file.
-    """
-    from slosh_cli.report.animation import write_animation
-    from slosh_cli.results.hdf5 import read_history, read_surface
-
-    path = Path(source)
-    history, profile = read_history(path), read_surface(path)
-    file = Path(target) if target is not None else path.with_name("animation.gif")
-    try_targets(file.parent, [file.name])
-    write_animation(history.name, _run_data(history, _scenario(path, history), profile, _picked(history)), file)
-    return file
-
-
 def _run_page(path: Path) -> str:
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     history, profile = read_history(path), read_surface(path)
-    scenario, rows = _scenario(path, history), _picked(history)
     facts = {
         "title": history.name,
         "verdict": _verdict(history),
         "warnings": [*history.warnings, *([history.reason] if history.reason else [])],
         "rows": history.time.size,
-        "surface_words": _surface_words(history, profile),
+        "surface_words": surface_words(history, profile),
         "tables": _run_tables(history),
         "scenario": history.scenario_text,
     }
-    return page_text(facts, _run_data(history, scenario, profile, rows), {})
-
-
-def _picked(history: History) -> Integers:
-    """The rows shown: at equal steps, with the largest and the least of every curve."""
-    even = np.linspace(0, history.time.size - 1, min(history.time.size, _MOST_ROWS)).round().astype(np.int64)
-    curves = [history.channels[name] for _, _, names in _CHARTS for name in names]
-    extremes = [int(find(values)) for values in curves for find in (np.argmin, np.argmax)]
-    return np.unique(np.concatenate([even, np.asarray(extremes, dtype=np.int64)]))
+    return page_text(facts, replay_data(path, history, profile), {})
 
 
 def _verdict(history: History) -> str:
@@ -98,76 +60,6 @@ def _verdict(history: History) -> str:
     over = [check.name for check in history.checks if not check.within] if hasattr(history, "checks") else []
     within = "no check is over its limit" if not over else "over its limit: " + "; ".join(over)
     return f"{found} from {history.initial_speed_m_s * 3.6:.4g} km/h; {within}."
-
-
-def _surface_words(history: History, profile: SurfaceProfile | None) -> str:
-    if profile is None:
-        return "The surface was recorded at the end walls only and is drawn there alone."
-    if not history.has_liquid:
-        return "The load is frozen: its surface stays flat."
-    assumed = " Their shapes along the tank are assumed: cosines." if profile.standing == "assumed" else ""
-    return f"The surface is that of the slosh modes, cut off at the tank's bottom and roof.{assumed}"
-
-
-def _scenario(path: Path, history: History) -> Scenario:
-    """The scenario of the run, from its text. Raises FileError where that is none."""
-    from slosh_cli.scenario import parse_scenario
-
-    try:
-        return parse_scenario(history.scenario_text, "scenario")
-    except ScenarioError as error:
-        told = f"its scenario is none that this version can read: {error.problems[0].text('scenario')}"
-        raise FileError(f"cannot read {path} as a slosh history: {told}; run it again", where=str(path)) from error
-
-
-def _run_data(history: History, scenario: Scenario, profile: SurfaceProfile | None, rows: Integers) -> dict[str, Any]:
-    from slosh_cli.section import liquid_depth, section_of
-
-    tank, wagon, held = scenario.tank, scenario.wagon, history.channels
-    moving = held["speed"] > _LOCKED_SPEED
-    wheels = []
-    for i, static in zip(WHEELS, history.static_wheel_load_N, strict=True):
-        rolling = held[wheel(i, "speed")]
-        turned = np.concatenate([[0.0], np.cumsum(0.5 * (rolling[1:] + rolling[:-1]) * np.diff(history.time))])
-        locked = (np.abs(rolling) < _LOCKED_SPEED) & moving
-        angle = plain_numbers(np.mod(turned / wagon.wheelset.wheel_radius, 2.0 * np.pi)[rows])
-        normal = plain_numbers(held[wheel(i, "normal_force")][rows])
-        wheels.append({"angle": angle, "normal": normal, "static": static, "locked": locked[rows].tolist()})
-    data = {
-        "time": plain_numbers(history.time[rows]),
-        "speed": plain_numbers(held["speed"][rows]),
-        "position": plain_numbers(held["position"][rows]),
-        "walls": [plain_numbers(held[name][rows]) for name in ("surface_front", "surface_rear")],
-        "wheels": wheels,
-        "charts": [_chart(history, rows, *one) for one in _CHARTS],
-        "wagon": {
-            **{"length": tank.length, "bottom": tank.bottom_height, "height": section_of(tank).height},
-            **{"depth": liquid_depth(tank), "pivot_spacing": wagon.pivot_spacing, "wheelbase": wagon.bogie.wheelbase},
-            **{"radius": wagon.wheelset.wheel_radius, "baffles": [one.position for one in tank.baffles]},
-        },
-    }
-    if profile is None:
-        return data
-    along = [np.interp(history.time[rows], profile.time, values) for values in profile.rise.T]
-    rise = [[float(f"{value:.4g}") for value in values] for values in np.stack(along, axis=1)]
-    return data | {"place": plain_numbers(profile.place), "rise": rise}
-
-
-def _chart(history: History, rows: Integers, title: str, scale: float, names: Sequence[str]) -> dict[str, Any]:
-
-    def short(name: str) -> str:
-        return name.split("_normal", maxsplit=1)[0].split("_speed", maxsplit=1)[0].replace("_", " ")
-
-    lines = [
-        {
-            "name": short(name),
-            "channel": name,
-            "scale": scale,
-            "values": plain_numbers(history.channels[name][rows] * scale),
-        }
-        for name in names
-    ]
-    return {"title": title, "lines": lines}
 
 
 def _run_tables(history: History) -> list[dict[str, Any]]:

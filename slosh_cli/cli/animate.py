@@ -1,4 +1,4 @@
-"""`slosh animate`: the replay of a run as a GIF."""
+"""`slosh animate`: the replay of a run or of an excited tank as a GIF."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,14 +11,16 @@ from slosh_cli.cli.output import say
 
 
 def animate_command(
-    history_file: Annotated[Path, typer.Argument(metavar="FILE.h5", help="History file of a run.", show_default=False)],
+    history_file: Annotated[
+        Path, typer.Argument(metavar="FILE.h5", help="History of a run, or of `tank excite`.", show_default=False)
+    ],
     output: Annotated[
         Path | None,
         option("--output -o", "FILE", "A .gif, or an .mp4 where ffmpeg is. Default: animation.gif beside FILE.h5."),
     ] = None,
 ) -> ExitCode:
-    """Replay a run as a GIF."""
-    from slosh_cli.application.reporting import animate
+    """Replay a run, or what `slosh tank excite` did to a tank, as a GIF."""
+    from slosh_cli.application.replay import animate
 
     say(str(animate(history_file, output)))
     return ExitCode.DONE

@@ -158,6 +158,12 @@ class Answers:
         """The answers as attributes of a file, by name."""
         return {one.name: one.attribute(value) for one, value in self._held(Shown.HISTORY)}
 
+    def _derive(self) -> None:
+        """Put in what follows from the scenario and from other answers."""
+        for one in self.table():
+            if one.of or one.given:
+                object.__setattr__(self, one.name, one.value_in(self))
+
     def _held(self, shown: Shown) -> list[tuple[Answer, Any]]:
         """The answers of an output with their values, without those that a file of an earlier version lacks."""
         return [(one, getattr(self, one.name)) for one in self.table(shown) if hasattr(self, one.name)]

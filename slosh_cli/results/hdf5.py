@@ -1,38 +1,35 @@
 """The history file of a run (HDF5): written whole, read back as a `History`."""
 
 import os
-import platform
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from datetime import UTC, datetime
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
 
 import h5py
-import numpy as np
 
 from slosh_cli.arrays import Array, Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
 from slosh_cli.results.files import FileError, SteadyFile, replacing
+from slosh_cli.results.hdf5_parts import circumstances, stored_surface, write_channel, write_surface
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import (
+    EXCITED,
     History,
+    StoredExcitation,
     faults_of_answers,
     faults_of_columns,
     plain_attributes,
     stored_columns,
 )
 from slosh_cli.results.stored_train import COUPLING, VEHICLE, stored_train
-from slosh_cli.results.surface import SurfaceProfile, stored_surface, surface_profile
+from slosh_cli.results.surface import SurfaceProfile, surface_profile
 from slosh_cli.results.train_result import TrainHistory, TrainResult
 from slosh_cli.scenario.loader import Root
 from slosh_cli.scenario.source import other_than_file
-from slosh_cli.version import __version__
 
 if TYPE_CHECKING:
     from slosh_cli.scenario import Scenario, TankScenario
@@ -42,13 +39,13 @@ _F = TypeVar("_F")
 
 _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
-_SURFACE: Final = "surface_profile"
 _LONGEST_TEXT: Final = 1_000_000
 
 
 class _Group(NamedTuple):
     channels: Mapping[Channel, Vector]
     attributes: Mapping[str, Any]
+    surface: "SurfaceProfile | None" = None
 
 
 def write_history(result: Result, path: Path) -> None:
@@ -59,9 +56,9 @@ def write_history(result: Result, path: Path) -> None:
     channels = {channel(name): values for name, values in result.channels.items()}
     ledger = {f"energy_{name.removeprefix('energy_')}_J": float(joule) for name, joule in result.energy.items()}
     work = {f"work_{name}": int(count) for name, count in result.work.items()}
-    attributes = {"format_version": _FORMAT} | _circumstances() | result.as_attributes() | ledger | work
-    profile = surface_profile(result.scenario, result.time, result.channels)
-    more = None if profile is None else partial(_write_profile, profile=profile)
+    attributes = {"format_version": _FORMAT} | circumstances() | result.as_attributes() | ledger | work
+    profile = surface_profile(result.scenario, result.time, result.channels, result.wetted)
+    more = None if profile is None else partial(write_surface, profile=profile)
     _write(path, result.scenario, result.time, channels, attributes, more=more)
 
 
@@ -71,11 +68,12 @@ def write_train(result: TrainResult, path: Path) -> None:
     for number, vehicle in enumerate(result.vehicles, 1):
         facts = vehicle.as_attributes() | {"scenario": scenario_text(vehicle.scenario)}
         found = {channel(name): values for name, values in vehicle.channels.items()}
-        groups[f"{VEHICLE}{number:03d}"] = _Group(found, facts)
+        surface = surface_profile(vehicle.scenario, result.time, vehicle.channels, vehicle.wetted)
+        groups[f"{VEHICLE}{number:03d}"] = _Group(found, facts, surface)
     for number, one in enumerate(result.couplings, 1):
         found = {info: getattr(one, info.name) for info in COUPLING_CHANNELS}
         groups[f"{COUPLING}{number:03d}"] = _Group(found, one.as_attributes())
-    attributes = {"train_format_version": _FORMAT} | _circumstances() | result.as_attributes()
+    attributes = {"train_format_version": _FORMAT} | circumstances() | result.as_attributes()
     _write(path, result.scenario, result.time, {}, attributes, groups)
 
 
@@ -89,11 +87,15 @@ def read_train(path: Path) -> TrainHistory:
 
 def is_train_history(path: Path) -> bool:
     """Whether the file is the history of a train; False where it cannot be read."""
+    return _has_attribute(path, "train_format_version")
+
+
+def _has_attribute(path: Path, name: str) -> bool:
     try:
         if other_than_file(path):
             return False
         with h5py.File(path, "r") as file:
-            return "train_format_version" in file.attrs
+            return name in file.attrs
     except (OSError, ValueError):
         return False
 
@@ -107,13 +109,13 @@ def write_excitation(
     profiles: "Mapping[Channel, Array]",
 ) -> None:
     """Write the history of a tank alone, whole, as `write_history`: `profiles` have axes of their own."""
-    attributes = {"excitation_format_version": _FORMAT, **_circumstances(), **facts}
+    attributes = {"excitation_format_version": _FORMAT, **circumstances(), **facts}
     _write(path, scenario, time, channels, attributes, more=partial(_write_tables, tables=profiles))
 
 
 def _write_tables(file: h5py.File, tables: Mapping[Channel, Array]) -> None:
     for info, table in tables.items():
-        _write_channel(file, info, table)
+        write_channel(file, info, table)
 
 
 def _write(
@@ -132,16 +134,18 @@ def _write(
     with replacing(path) as temporary, temporary.open("xb+") as target:
         steady = SteadyFile(target)
         with h5py.File(steady, "w") as file:
-            axis = _write_channel(file, TIME, time)
+            axis = write_channel(file, TIME, time)
             axis.make_scale(TIME.name)
             for info, values in channels.items():
-                _write_channel(file, info, values).dims[0].attach_scale(axis)
+                write_channel(file, info, values).dims[0].attach_scale(axis)
             for name, group in (groups or {}).items():
                 part = file.create_group(name)
                 for info, values in group.channels.items():
-                    _write_channel(part, info, values).dims[0].attach_scale(axis)
+                    write_channel(part, info, values).dims[0].attach_scale(axis)
                 for key, value in group.attributes.items():
                     part.attrs[key] = value
+                if group.surface is not None:
+                    write_surface(part, group.surface)
             if more is not None:
                 more(file)
             file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
@@ -164,6 +168,23 @@ def read_history(path: Path) -> History:
     time = columns.pop(TIME.name)
     _refuse(path, faults_of_columns(time, columns))
     return History(time=time, channels=columns, attributes=attributes, scenario_text=scenario_text)
+
+
+def read_excitation(path: Path) -> StoredExcitation:
+    """Read what `write_excitation` wrote. Raises FileError where the file is missing, damaged or something else."""
+    with _opened(path) as file:
+        if file.attrs.get("excitation_format_version") != _FORMAT:
+            raise FileError(f"{path} is not the history of a tank alone that this version can read", where=str(path))
+        name, text, columns = str(file.attrs["name"]), _text(path, file), _sound(path, stored_columns(file, EXCITED))
+        surface, faults = stored_surface(file, excited=True)
+    time = columns.pop(TIME.name)
+    _refuse(path, [*faults_of_columns(time, columns, EXCITED), *faults])
+    return StoredExcitation(name, time, columns, surface, text)
+
+
+def is_excitation(path: Path) -> bool:
+    """Whether the file is the history of a tank alone; False where it cannot be read."""
+    return _has_attribute(path, "excitation_format_version")
 
 
 def _text(path: Path, file: h5py.File) -> str:
@@ -217,44 +238,25 @@ def _without_words(text: str) -> str:
     return re.sub(r"^(name|description):.*\n(?:[ \t].*\n|\n)*", "", text, flags=re.MULTILINE)
 
 
-def _write_channel(file: h5py.Group, info: Channel, values: Array) -> h5py.Dataset:
-    dataset = file.create_dataset(info.name, data=values, dtype="<f8")
-    dataset.attrs["units"] = info.unit
-    dataset.attrs["long_name"] = info.long_name
-    return dataset
+def read_surface(path: Path, vehicle: int | None = None) -> SurfaceProfile | None:
+    """The surface along the tank of a run, or of a train's vehicle counted from 1 at the front; None in a file without.
 
-
-def _write_profile(file: h5py.File, profile: SurfaceProfile) -> None:
-    """The surface along the tank, (times, places), with its coordinates."""
-    instants = Channel(f"{_SURFACE}_time", "s", "instants of the surface along the tank")
-    places = Channel(f"{_SURFACE}_place", "m", "distance from the front end wall")
-    scales = [_write_channel(file, instants, profile.time), _write_channel(file, places, profile.place)]
-    rise = file.create_dataset(_SURFACE, data=profile.rise, dtype="<f4", compression="gzip", shuffle=True)
-    rise.attrs.update({"units": "m", "long_name": "rise of the free surface", "standing": profile.standing})
-    for axis, scale in enumerate(scales):
-        scale.make_scale(scale.name.removeprefix("/"))
-        rise.dims[axis].attach_scale(scale)
-
-
-def read_surface(path: Path) -> SurfaceProfile | None:
-    """The surface along the tank that `write_history` kept; None in a file without it. Raises FileError."""
+    Raises FileError for a file that cannot be read, a damaged surface, or a vehicle that the file has not.
+    """
     with _opened(path) as file:
-        if _SURFACE not in file:
-            return None
-        return _sound(path, stored_surface(file, _SURFACE))
+        profile, faults = stored_surface(_of_vehicle(path, file, vehicle))
+    _refuse(path, faults)
+    return profile
 
 
-def _circumstances() -> dict[str, Any]:
-    """Which program wrote the file, when and where."""
-    return {
-        "program": "slosh",
-        "program_version": __version__,
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "python_version": platform.python_version(),
-        "numpy_version": np.__version__,
-        "numba_version": version("numba"),
-        "platform": f"{platform.platform()} {sys.byteorder}-endian",
-    }
+def _of_vehicle(path: Path, file: h5py.File, vehicle: int | None) -> h5py.Group:
+    """The part of a file that holds the histories of one wagon."""
+    numbers = [int(name.removeprefix(VEHICLE)) for name in file if name.startswith(VEHICLE)]
+    if vehicle is None and numbers:
+        raise FileError(f"{path} is the history of a train: say which of {len(numbers)} vehicles", where=str(path))
+    if vehicle is not None and vehicle not in numbers:
+        raise FileError(f"{path} has no vehicle {vehicle}, but {len(numbers)} vehicles", where=str(path))
+    return file if vehicle is None else file[f"{VEHICLE}{vehicle:03d}"]
 
 
 def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:

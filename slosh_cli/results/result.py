@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from slosh_cli.results.recommendation import Recommendation
+    from slosh_cli.results.surface import WettedAreas
     from slosh_cli.scenario import Scenario
 
 
@@ -253,7 +254,7 @@ class Result(Record):
     """One stop in memory.
 
     recommendation: the model of the liquid that suits the stop; None for a rigid load.
-    energy: final ledger in J. work: counts of Newton iterations, factorisations, right-hand sides, events.
+    energy: final ledger in J. work: counts of what was computed. wetted: areas that a shallow-water liquid recorded.
 
     Raises ValueError when a channel's length differs from that of `time`, KeyError for an unknown channel.
     """
@@ -265,6 +266,7 @@ class Result(Record):
     scenario: "Scenario"
     energy: Mapping[str, float]
     work: Mapping[str, int]
+    wetted: "WettedAreas | None" = None
 
     def __post_init__(self) -> None:
         time = _read_only(self.time)
@@ -276,9 +278,7 @@ class Result(Record):
         found = {"status": Status(self.status), "time": time, "channels": columns}
         for name, value in found.items():
             object.__setattr__(self, name, value)
-        for one in self.table():
-            if one.of or one.given:
-                object.__setattr__(self, one.name, one.value_in(self))
+        self._derive()
 
     @property
     def microseconds_per_step(self) -> float:

@@ -20,6 +20,7 @@ from slosh_cli.results.recommendation import Recommendation, recommend, stop_dec
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
 from slosh_cli.results.slides import Slide, slide_check
+from slosh_cli.results.surface import wetted_areas
 from slosh_cli.results.train_result import CouplingResult, TrainResult, VehicleResult, gathered, slack_warnings
 from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
@@ -106,6 +107,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         rejected_steps=stop.train.rejected,
         work=_work(stop),
         solve_seconds=run.seconds,
+        wetted=wetted_areas(vehicle.liquid),
     )
 
 
@@ -160,6 +162,7 @@ def _of_vehicle(scenario: Scenario, stop: ReadyStop, run: Run) -> VehicleResult:
         **{name: wheels[name] for name in ("min_wheel_load_N", "max_wheel_load_N", "locked_time_s")},
         checks=_verdicts(scenario, stop, run, advice),
         recorded=partial(channels_of, scenario, vehicle, run.rows[:, stop.place]),
+        wetted=wetted_areas(vehicle.liquid),
     )
 
 

@@ -3,7 +3,8 @@
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from slosh_cli.results.channels import TIME, WHEELS, channel, wheel
 from slosh_cli.results.result import Record, Status
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario.scalars import well_formed
+
+if TYPE_CHECKING:
+    from slosh_cli.results.surface import SurfaceProfile
 
 _MOST_ROWS: Final = 10_000_000
 """Rows of a history; a run has at most two million."""
@@ -27,6 +31,22 @@ NEEDED: Final = frozenset(
     | {wheel(i, quantity) for i in WHEELS for quantity in ("speed", "creepage", "normal_force")}
 )
 """Channels that figures and reports cannot do without."""
+
+
+EXCITED: Final = frozenset({"deceleration", "liquid_force", "surface_front", "surface_rear"})
+"""Channels of a tank alone that its replay cannot do without."""
+
+
+@dataclass(frozen=True, eq=False)
+class StoredExcitation:
+    """An excitation of a tank alone, read back: its `channels` at `time` (n,) s, the scenario as resolved YAML; the
+    `surface` along the tank has its places from the rear end wall, and there is none in files of earlier versions."""
+
+    name: str
+    time: Vector
+    channels: Mapping[str, Vector]
+    surface: "SurfaceProfile | None"
+    scenario_text: str
 
 
 class History(Record):
@@ -127,10 +147,10 @@ def _value(one: Answer, value: Any) -> Any:
     return one.kind(value)
 
 
-def stored_columns(file: Any) -> dict[str, Vector] | list[str]:
+def stored_columns(file: Any, needed: Collection[str] = NEEDED) -> dict[str, Vector] | list[str]:
     """The time axis and every channel that an open file has, or what is wrong with these; all else is left alone."""
-    known = [name for name in file if name == TIME.name or _is_channel(name)]
-    missing = [name for name in (TIME.name, *sorted(NEEDED)) if name not in known]
+    known = [name for name in file if name == TIME.name or name in needed or _is_channel(name)]
+    missing = [name for name in (TIME.name, *sorted(needed)) if name not in known]
     faults = [f"it lacks the channels {', '.join(missing)}"] if missing else []
     faults += [fault for name in known for fault in faults_of_shape(name, file.get(name))]
     return faults or {name: np.asarray(file[name][:], dtype=np.float64) for name in known}
@@ -158,11 +178,12 @@ def faults_of_shape(name: str, dataset: Any) -> Iterator[str]:
         yield f"its {name} must be in the file itself, all {shape[0]} rows of it"
 
 
-def is_there(dataset: Any) -> bool:
-    """Whether the numbers are in the file, and not in others; nor is there a vast column with next to nothing in it."""
+def is_there(dataset: Any, small: int = _SMALL) -> bool:
+    """Whether the numbers are in the file, not in others, and are no more than `small` bytes with next to nothing in
+    them."""
     if dataset.is_virtual or dataset.external:
         return False
-    return bool(dataset.nbytes <= max(_SMALL, _DENSEST * dataset.id.get_storage_size()))
+    return bool(dataset.nbytes <= max(small, _DENSEST * dataset.id.get_storage_size()))
 
 
 def faults_of_columns(time: Vector, channels: Mapping[str, Vector], needed: Collection[str] = NEEDED) -> Iterator[str]:

@@ -8,6 +8,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.results.answers import Answer
 from slosh_cli.results.channels import TIME
+from slosh_cli.results.hdf5_parts import SURFACE
 from slosh_cli.results.stored import faults_of_answers, faults_of_columns, faults_of_shape, plain_attributes
 from slosh_cli.results.train_result import CouplingResult, StoredPart, TrainHistory, TrainResult, VehicleResult
 from slosh_cli.scenario.schema_train import MOST_VEHICLES
@@ -61,12 +62,17 @@ def _faults_of(file: Any, kind: str, name: str) -> Iterator[str]:
     missing = [key for key in needed if key not in group]
     if missing:
         yield f"its {name} lacks the channels {', '.join(missing)}"
-    yield from (fault for key in group for fault in faults_of_shape(f"{name}/{key}", group.get(key)))
+    yield from (fault for key in _columns_of(group) for fault in faults_of_shape(f"{name}/{key}", group.get(key)))
 
 
 def _part(group: Any) -> StoredPart:
-    return StoredPart(plain_attributes(group), {key: _column(group, key) for key in group})
+    return StoredPart(plain_attributes(group), {key: _column(group, key) for key in _columns_of(group)})
 
 
 def _column(group: Any, name: str) -> Vector:
     return np.asarray(group[name][:], dtype=np.float64)
+
+
+def _columns_of(group: Any) -> list[str]:
+    """What is in a part of a train beside the surface along its tank."""
+    return [key for key in group if not key.startswith(SURFACE)]

@@ -17,6 +17,7 @@ from slosh_cli.results.validity import Check, warnings_of
 if TYPE_CHECKING:
     import pandas as pd
 
+    from slosh_cli.results.surface import WettedAreas
     from slosh_cli.scenario import Scenario
     from slosh_cli.scenario.train_file import TrainScenario
 
@@ -27,7 +28,8 @@ _FOR_SLACK = 5e-5
 
 
 class VehicleResult(Answers):
-    """One vehicle of a train. `recorded` gives its histories by channel name."""
+    """One vehicle of a train. `recorded` gives its histories by channel name, `wetted` is what a shallow-water liquid
+    recorded along the tank."""
 
     # fmt: off
     name: str = derived("", "name of the vehicle's scenario", Place.NAME, given="name", shown=_TOLD)
@@ -52,9 +54,10 @@ class VehicleResult(Answers):
     scenario: "Scenario"
     checks: tuple[Check, ...]
     recorded: Callable[[], dict[str, Vector]]
+    wetted: "WettedAreas | None" = None
 
     def __post_init__(self) -> None:
-        _derive(self)
+        self._derive()
 
     @cached_property
     def channels(self) -> Mapping[str, Vector]:
@@ -140,7 +143,7 @@ class TrainResult(Answers):
     time: Vector
 
     def __post_init__(self) -> None:
-        _derive(self)
+        self._derive()
 
     def summary(self) -> dict[str, Any]:
         """The answer in plain Python values, with the keys of `slosh run --json` but for `files`."""
@@ -206,13 +209,6 @@ class TrainHistory:
     def status(self) -> Status:
         """How the run ended."""
         return Status(self.facts["status"])
-
-
-def _derive(record: Any) -> None:
-    """Put in what follows from the scenario and from other answers."""
-    for one in record.table():
-        if one.of or one.given:
-            object.__setattr__(record, one.name, one.value_in(record))
 
 
 def gathered(verdicts: Sequence[Sequence[Check]]) -> tuple[str, ...]:

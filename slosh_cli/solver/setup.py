@@ -25,6 +25,7 @@ from slosh_cli.tank.load import FrozenLoad, frozen_load
 from slosh_cli.tank.mixed import of_one_class, own_liquid
 from slosh_cli.tank.modal import ModalLiquid, modal_liquid
 from slosh_cli.tank.still import shallow_liquid
+from slosh_cli.tank.surface_record import surface_record
 from slosh_cli.track.contact import contact_model
 from slosh_cli.track.line import Line
 from slosh_cli.track.mem import RailModel, rail_model
@@ -46,6 +47,8 @@ _STANDING = 1e-4
 """Vehicles of a train that are slower than this, m/s, count as standing."""
 _EVENT_TIME = 1e-4
 """Events of a train are met to this, s. Some hundred wheels lock and let go as its vehicles come to a stand."""
+_INSTANTS_IN_TRAIN = 500
+"""So many instants of its liquid's surface does each vehicle of a train keep."""
 _FIRST_STEP = 1e-3
 """First step to try, s."""
 _SLOWING = 2.2
@@ -100,7 +103,7 @@ def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> t
     lengths = np.array([scenario.wagon.length_in_train for scenario in scenarios])
     behind = np.cumsum(lengths) - 0.5 * (lengths + lengths[0])
     found = [_vehicle(scenario, way) for scenario, way in zip(scenarios, behind, strict=True)]
-    vehicles, first = _of_one_kind(found), scenarios[0]
+    vehicles, first = _of_one_kind(found) if len(found) > 1 else tuple(found), scenarios[0]
     most_missing = max(_LEAST_MISSING, first.solver.tolerance / 3)
     places = np.array([vehicle.wagon.coupling_row @ vehicle.points[0].q for vehicle in vehicles])
     law = couplings(coupling, np.diff(places), HALF) if coupling and len(vehicles) > 1 else None
@@ -112,13 +115,20 @@ def train_problem(scenarios: Sequence[Scenario], coupling: Coupling | None) -> t
 
 
 def _of_one_kind(vehicles: list[Vehicle]) -> tuple[Vehicle, ...]:
-    """The vehicles with their liquids as blocks of one class, so that they make a list."""
-    own = [vehicle.liquid for vehicle in vehicles]
+    """The vehicles with their liquids as blocks of one class, so that they make a list; each keeps less of its own."""
+    own = [_recording_less(vehicle.liquid) for vehicle in vehicles]
     liquids = of_one_class(own, modal_liquid((), STANDARD_GRAVITY, HALF))
     return tuple(
         vehicle if liquid is vehicle.liquid else vehicle.replaced(liquid=liquid)
         for vehicle, liquid in zip(vehicles, liquids, strict=True)
     )
+
+
+def _recording_less(liquid: Slosh) -> Slosh:
+    """The liquid of a vehicle that is one of many."""
+    if not isinstance(liquid, CellLiquid):
+        return liquid
+    return liquid.replaced(surface=surface_record(liquid.shallow, _INSTANTS_IN_TRAIN))
 
 
 def _vehicle(scenario: Scenario, behind: float) -> Vehicle:

@@ -29,6 +29,7 @@ from slosh_cli.tank.cell_state import Cells
 from slosh_cli.tank.liquid import Slosh
 from slosh_cli.tank.shallow import WORK_ROWS, ShallowLiquid, liquid_energy_in_tank, liquid_evolve
 from slosh_cli.tank.still import CellColumns
+from slosh_cli.tank.surface_record import SurfaceRecord, surface_record
 from slosh_cli.vectors import fill
 
 _LOOSE = 0.2
@@ -40,9 +41,10 @@ _LEAST_CHANGE = 1e-3
 class CellLiquid(Slosh):
     """The shallow-water liquid of half a tank in a wagon, by `liquid`'s contract.
 
-    `start`, `end` are its cells at a step's ends; `work` (WORK_ROWS, cells + 1) and `sums` (4,) are scratch. The
-    wagon's accelerations at the still liquid's centre are `by_force` per newton along x at the tank's bottom centre and
-    `by_moment` per newton metre on the car's pitch, `along_by_force` is that of the track's coordinate.
+    `start`, `end` are its cells at a step's ends; `work` (WORK_ROWS, cells + 1) and `sums` (4,) are scratch, `surface`
+    is its record. The wagon's accelerations at the still liquid's centre are `by_force` per newton along x at the
+    tank's bottom centre and `by_moment` per newton metre on the car's pitch, `along_by_force` is that of the track's
+    coordinate.
     The account with the wagon: `force` (N) and `moment` (N m) are means over the step, `start_...`, `end_...` the push
     at its two ends; `following` (kg) is the added mass with which it follows the tank's acceleration, `held_...` the
     push at acceleration 0; `left_...` is owed from earlier steps, `owed_...` with this one (N s, N m s); `loss` (J) is
@@ -54,6 +56,7 @@ class CellLiquid(Slosh):
     end: Cells
     work: Matrix
     sums: Vector
+    surface: SurfaceRecord
     by_force: float
     by_moment: float
     along_by_force: float
@@ -177,9 +180,7 @@ class CellLiquid(Slosh):
     @inner_kernel
     def energy(self, ride, stage):
         """The liquid's energies in the track's frame; before a step's end the cells are those of its start."""
-        liquid, cells = self.shallow, self.start
-        if stage == END:
-            cells = self.end
+        liquid, cells = self.shallow, self.end if stage == END else self.start
         pitch, speed = ride.pitch[stage], ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
         kinetic, potential = liquid_energy_in_tank(liquid, cells.area, cells.flow, cells.depth)
         kinetic += speed * cells.momentum(liquid) + 0.5 * liquid.mass * speed * speed
@@ -189,9 +190,7 @@ class CellLiquid(Slosh):
     @inner_kernel
     def momentum(self, ride, stage):
         """That of all the liquid, which the wagon does not carry along the track."""
-        liquid, cells = self.shallow, self.start
-        if stage == END:
-            cells = self.end
+        liquid, cells = self.shallow, self.end if stage == END else self.start
         speed = ride.speed[stage] + liquid.centre_height * ride.pitch_rate[stage]
         return liquid.mass * speed + cells.momentum(liquid)
 
@@ -204,10 +203,9 @@ class CellLiquid(Slosh):
     def record(self, row, first, part, cubic, parabola):
         """Force and moment, means over the step, then the rise of the surface at the front and at the rear wall."""
         row[first], row[first + 1] = self.force, self.moment
-        front, rear = self.start.rise(self.shallow)
-        front_end, rear_end = self.end.rise(self.shallow)
-        row[first + 2] = (1.0 - part) * front + part * front_end
-        row[first + 3] = (1.0 - part) * rear + part * rear_end
+        (front, rear), (front_end, rear_end) = self.start.rise(self.shallow), self.end.rise(self.shallow)
+        row[first + 2], row[first + 3] = (1.0 - part) * front + part * front_end, (1.0 - part) * rear + part * rear_end
+        self.surface.note(self.start.area, self.end.area, part)
 
     @inner_kernel
     def taken(self):
@@ -218,9 +216,8 @@ class CellLiquid(Slosh):
     def accept(self, step):
         """The end becomes the start; what is owed is left for the next step."""
         self.end.copy_to(self.start)
-        depth = self.end.depth
-        for i in range(depth.size):
-            self.deepest = max(self.deepest, depth[i])
+        for i in range(self.end.depth.size):
+            self.deepest = max(self.deepest, self.end.depth[i])
         self.last_step = step
         self.start_force, self.start_moment = self.end_force, self.end_moment
         self.left_force, self.left_moment = self.owed_force, self.owed_moment
@@ -236,6 +233,7 @@ def cell_liquid(
         end=Cells.blank(shallow.cells),
         work=np.zeros((WORK_ROWS, shallow.cells + 1)),
         sums=np.zeros(4),
+        surface=surface_record(shallow),
         by_force=by_force,
         by_moment=by_moment,
         along_by_force=along_by_force,

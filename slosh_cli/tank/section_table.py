@@ -7,6 +7,8 @@ Wegner, La Houille Blanche 1 (1964) 33-39.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from slosh_cli.arrays import Integers, Matrix, Vector
@@ -172,6 +174,14 @@ def depth_of(table, area):
         if abs(change) <= 1e-8:  # the next change would be about the square of this one
             break
     return curve[0] + part / curve[1]
+
+
+@kernel
+def depths_of(table: SectionTable, areas: Matrix, depths: Matrix) -> None:
+    """Depths (n, m) m of wetted areas (n, m) m^2; none of what is not finite."""
+    for i in range(areas.shape[0]):
+        for k in range(areas.shape[1]):
+            depths[i, k] = depth_of(table, areas[i, k]) if math.isfinite(areas[i, k]) else math.nan
 
 
 @kernel

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from slosh_cli.application.reporting import animate, write_report
+from slosh_cli.application.replay import animate
+from slosh_cli.application.reporting import write_report
 from slosh_cli.application.stop import simulate
 from slosh_cli.results.files import FileError
 from slosh_cli.results.hdf5 import read_surface, write_history
