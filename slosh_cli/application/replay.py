@@ -40,19 +40,19 @@ def animate(source: str | Path, target: str | Path | None = None) -> Path:
     """
     from slosh_cli.report.animation import write_animation, write_tank_animation
     from slosh_cli.results.hdf5 import is_excitation, read_excitation, read_history, read_surface
+    from slosh_cli.results.stored import StoredExcitation
 
     path = Path(source)
+    held = read_excitation(path) if is_excitation(path) else read_history(path)
     file = Path(target) if target is not None else path.with_name("animation.gif")
     try_targets(file.parent, [file.name])
-    if is_excitation(path):
-        excited = read_excitation(path)
-        if excited.surface is None:
+    if isinstance(held, StoredExcitation):
+        if held.surface is None:
             told = "has no surface along the tank, as earlier versions of slosh recorded none"
             raise FileError(f"{path} {told}: run `slosh tank excite` again", where=str(path))
-        write_tank_animation(excited.name, _tank_data(path, excited, excited.surface), file)
+        write_tank_animation(held.name, _tank_data(path, held, held.surface), file)
     else:
-        history, profile = read_history(path), read_surface(path)
-        write_animation(history.name, replay_data(path, history, profile), file)
+        write_animation(held.name, replay_data(path, held, read_surface(path)), file)
     return file
 
 

@@ -198,8 +198,7 @@ def _text(path: Path, file: h5py.File) -> str:
 
 def _refuse(path: Path, faults: Iterable[str]) -> None:
     """Raise FileError with all faults of a history, where there are any."""
-    found = list(faults)
-    if found:
+    if found := list(faults):
         listed = "; ".join(found[:MOST_SHOWN]) + (f"; and {len(found) - MOST_SHOWN} more" * (len(found) > MOST_SHOWN))
         raise FileError(f"cannot read {path} as a slosh history: {listed}; run the scenario again", where=str(path))
 
@@ -287,7 +286,7 @@ def _opened(path: Path) -> Iterator[h5py.File]:
             _refuse(path, _faults_of_links(file))
             yield file
     except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError) as error:
-        number = getattr(error, "errno", None)
+        number = error.errno if isinstance(error, OSError) else None
         reason = os.strerror(number) if number else " ".join(str(error).split())
         raise FileError(f"cannot read {path} as a slosh history (HDF5): {reason}", where=str(path)) from error
 

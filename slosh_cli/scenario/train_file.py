@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from os.path import isfile
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -237,8 +237,7 @@ def _for_all(file: TrainFile, key: str) -> str:
 def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:
     """The file of a vehicle's scenario; None, with a problem, where there is none or it describes a train."""
     where, beside = ("vehicles", number, "scenario"), path.parent / entry.scenario
-    found = beside
-    if not os.path.isfile(beside):
+    if not isfile(found := beside):
         try:
             found = find_packaged(entry.scenario)
         except UsageError as error:
