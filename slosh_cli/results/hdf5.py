@@ -17,7 +17,7 @@ import numpy as np
 from slosh_cli.arrays import Array, Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
-from slosh_cli.results.files import FileError, SteadyFile, replacing
+from slosh_cli.results.files import FileError, SteadyFile, finish_moves, replacing
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import NEEDED, History, faults_of_attributes, faults_of_columns, faults_of_shape
 from slosh_cli.results.surface import SurfaceProfile, surface_profile
@@ -288,6 +288,7 @@ def _plain(value: Any) -> Any:
 
 @contextmanager
 def _unreadable(path: Path) -> Iterator[None]:
+    finish_moves(path.parent)
     if not path.exists():
         raise FileError(f"{path} does not exist", where=str(path))
     if path.is_dir():
