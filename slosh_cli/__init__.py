@@ -9,7 +9,7 @@ docs/python.md shows everything that is offered here.
 
 from slosh_cli.version import __version__
 
-TYPE_CHECKING = False  # the module typing takes longer to load than all that stands here
+TYPE_CHECKING: bool = False  # the module typing takes longer to load than all that stands here
 if TYPE_CHECKING:
     from typing import Any
 

@@ -31,8 +31,10 @@ class Keeping:
         try:
             yield
         except Exception as error:  # of any library: the answer is there, and must be told
+            from slosh_cli.results.files import words_of
+
             first = error.__cause__ if isinstance(error.__cause__, OSError) else error
-            system = first.strerror if isinstance(first, OSError) else None
+            system = words_of(first) if isinstance(first, OSError) else None
             kind = "" if isinstance(error, SloshError | OSError) else f"{type(error).__name__}: "
             self.failures.append(f"{what} could not be written: {kind}{system or error}")
             self.causes.append(error)
@@ -47,9 +49,10 @@ class Keeping:
         """Write files into `folder`; returns those of the names `owned` that are there afterwards, as paths.
 
         together: file name -> what writes it to a path; they appear at once, and what an earlier command left of
-        `owned` goes. then: figure -> what draws it into a folder, one after the other.
+        `owned` goes, unless none of them could be written. then: figure -> what draws it into a folder, one after the
+        other.
         """
-        from slosh_cli.results.files import staging
+        from slosh_cli.results.files import FileError, staging
 
         begun = False
         with self.part(str(folder)):
@@ -57,6 +60,8 @@ class Keeping:
                 for name, write in together.items():
                     with self.part(str(folder / name)):
                         write(stage / name)
+                if not any(stage.iterdir()) and any((folder / name).is_file() for name in owned):
+                    raise FileError("there is room for none of the files; what an earlier command left there stays")
             begun = True
         if not begun:  # what lies there is of an earlier command, as it was
             return []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -93,7 +93,11 @@ class OpenStudy:
 
         names = partial(columns, self.study)
         write = {TABLE: lambda path: write_rows(names(self.rows()), self.rows(), path)}
-        return next(iter(keeping.keep(self.folder, [TABLE, *figure_files(self.folder)], write, {})), None)
+        files = keeping.keep(self.folder, [TABLE, *figure_files(self.folder)], write, {})
+        if not files:  # a table of other stops than the journal's must not stand beside it
+            with suppress(OSError):
+                (self.folder / TABLE).unlink()
+        return next(iter(files), None)
 
     def keep_figures(self, keeping: Keeping, more: Callable[[int, int], None], view: View = _AS_FITS) -> list[str]:
         """Draw the figures; returns those that are there, as paths.

@@ -1,5 +1,6 @@
 """`slosh init`: a commented scenario to start from."""
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, Final
@@ -116,15 +117,11 @@ def _of_presets(given: dict[str, str], output: Path | None) -> ExitCode:
 
 
 def _write_new(file: Path, text: str) -> None:
-    try:
-        new = file.open("x", encoding="utf-8", newline="\n")
-    except FileExistsError as error:
-        raise UsageError(f"{file} exists already; choose another name with -o FILE", str(file)) from error
-    except OSError as error:
-        raise UsageError(f"cannot write {file}: {error.strerror or error}", str(file)) from error
-    try:
-        with new:
-            new.write(text)
-    except OSError as error:
-        file.unlink(missing_ok=True)
-        raise UsageError(f"cannot write {file}: {error.strerror or error}", str(file)) from error
+    """Write a file that is not there yet, whole or not at all, also where the power fails."""
+    from slosh_cli.results.files import write_text
+
+    if os.path.lexists(file):
+        raise UsageError(f"{file} exists already; choose another name with -o FILE", str(file))
+    if not file.parent.is_dir():
+        raise UsageError(f"cannot write {file}: there is no folder {file.parent}", str(file))
+    write_text(text, file)

@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 
-TYPE_CHECKING = False  # the module typing takes as long to load as all that is needed here
+TYPE_CHECKING: bool = False  # the module typing takes as long to load as all that is needed here
 if TYPE_CHECKING:
     from threading import Event
 

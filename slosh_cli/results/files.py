@@ -1,6 +1,8 @@
 """Files that appear whole or not at all."""
 
+import errno
 import io
+import json
 import os
 import re
 import secrets
@@ -14,6 +16,11 @@ from typing import Any, BinaryIO, Final
 from slosh_cli.errors import SloshError
 
 _PART: Final = re.compile(r"\..*[0-9a-f]{8}\.part")
+_WHOLE: Final = re.compile(r"\.[0-9a-f]{8}\.whole")
+_NAMES: Final = ".names"
+"""File in a stage that says what moves up and what goes for it."""
+_FULL: Final = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
+_CLOSED: Final = (errno.EROFS, errno.EACCES, errno.EPERM)
 _ABANDONED: Final = 86400.0
 """Seconds after which an unfinished part belongs to a process that was killed."""
 
@@ -53,12 +60,14 @@ def replacing(path: Path) -> Iterator[Path]:
 def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
     """Yield an empty folder inside `folder`; when the block ends well its files move up together.
 
-    Files named in `owned` are removed first, so that `folder` never holds a mixture of two runs, whenever the
-    process ends. When the block fails, `folder` keeps what it had.
+    Files named in `owned` are removed first, so that `folder` never holds a mixture of two runs. When the block fails,
+    `folder` keeps what it had. Where the process ends while the files move, whoever looks into `folder` next moves the
+    rest: it holds the old files or the new ones, whenever that happens.
     Raises FileError when the operating system refuses.
     """
     with _refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
+        finish_moves(folder)
         stage = folder / f".{secrets.token_hex(4)}.part"
         _unfinished.add(stage)
         stage.mkdir()
@@ -67,15 +76,37 @@ def staging(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
             written = sorted(stage.iterdir())
             for file in written:
                 _to_disk(file)
-            _check_no_folders(folder, [file.name for file in written])
-            for name in owned:
-                (folder / name).unlink(missing_ok=True)
-            for file in written:
-                file.replace(folder / file.name)
+            names = [file.name for file in written]
+            _check_no_folders(folder, names)
+            (stage / _NAMES).write_text(json.dumps({"new": names, "owned": sorted(owned)}), encoding="utf-8")
+            _to_disk(stage / _NAMES)
+            _to_disk(stage)
+            _move_up(stage.rename(stage.with_suffix(".whole")))
         finally:
             shutil.rmtree(stage, ignore_errors=True)
             _unfinished.discard(stage)
-        _to_disk(folder)
+
+
+def finish_moves(folder: Path) -> None:
+    """Bring up the files of an answer that was whole when its process ended. What cannot be moved stays."""
+    with suppress(OSError, ValueError, KeyError):
+        for stage in folder.iterdir():
+            if _WHOLE.fullmatch(stage.name) and stage.is_dir() and not stage.is_symlink():
+                _move_up(stage)
+
+
+def _move_up(stage: Path) -> None:
+    """Replace the files of the folder around `stage` by those in it, once more where that was begun before."""
+    folder, told = stage.parent, json.loads((stage / _NAMES).read_text(encoding="utf-8"))
+    names = [Path(name).name for name in told["new"]]
+    for name in (Path(name).name for name in told["owned"]):
+        if name not in names or (stage / name).exists():
+            (folder / name).unlink(missing_ok=True)
+    for name in names:
+        with suppress(FileNotFoundError):  # it has moved already
+            (stage / name).replace(folder / name)
+    _to_disk(folder)
+    shutil.rmtree(stage, ignore_errors=True)
 
 
 def remove_unfinished() -> None:
@@ -88,7 +119,7 @@ def remove_unfinished() -> None:
 def write_text(text: str, path: Path) -> None:
     """Write a text (UTF-8) to `path`, which is replaced only when it is whole. Raises FileError."""
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def try_targets(folder: Path, names: Collection[str]) -> None:
@@ -111,6 +142,7 @@ def try_targets(folder: Path, names: Collection[str]) -> None:
             probe.unlink()
             _check_no_folders(folder, names)
             _remove_abandoned(folder)
+            finish_moves(folder)
         finally:
             for place in missing:
                 with suppress(OSError):
@@ -130,12 +162,21 @@ def _remove_abandoned(folder: Path) -> None:
                 shutil.rmtree(part) if part.is_dir() and not part.is_symlink() else part.unlink()
 
 
+def words_of(error: OSError) -> str:
+    """Why the system refused, and what to do about it where that is known."""
+    words = error.strerror or str(error)
+    if error.errno in _FULL:
+        limit = " (the limit is `ulimit -f`)" if error.errno == errno.EFBIG else ""
+        return f"{words}{limit}; make room, or choose another place with -o"
+    return f"{words}; choose another place with -o" if error.errno in _CLOSED else words
+
+
 @contextmanager
 def _refusals(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise FileError(f"cannot write {path}: {error.strerror or error}", where=str(path)) from error
+        raise FileError(f"cannot write {path}: {words_of(error)}", where=str(path)) from error
 
 
 def _to_disk(path: Path) -> None:

@@ -13,7 +13,7 @@ import h5py
 from slosh_cli.arrays import Array, Vector
 from slosh_cli.errors import MOST_SHOWN
 from slosh_cli.results.channels import COUPLING_CHANNELS, TIME, Channel, channel
-from slosh_cli.results.files import FileError, SteadyFile, replacing
+from slosh_cli.results.files import FileError, SteadyFile, finish_moves, replacing
 from slosh_cli.results.hdf5_parts import circumstances, stored_surface, write_channel, write_surface
 from slosh_cli.results.result import Result
 from slosh_cli.results.stored import (
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from slosh_cli.scenario.train_file import TrainScenario
 
 _F = TypeVar("_F")
-
 _FORMAT: Final = 1
 _SCENARIO: Final = "scenario"
 _LONGEST_TEXT: Final = 1_000_000
@@ -274,6 +273,7 @@ def _check_format(path: Path, attributes: Mapping[str, Any]) -> None:
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.File]:
     """The file, open for reading. Raises FileError where it is missing, damaged, or leads to other files."""
+    finish_moves(path.parent)
     try:
         other = other_than_file(path)
         if other == "a folder":

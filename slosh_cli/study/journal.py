@@ -87,6 +87,9 @@ class Journal:
                 self._open(read_only=read_only)
             except BaseException:
                 self._file.close()
+                with suppress(OSError):
+                    if not read_only and not self.path.stat().st_size:  # a full disk takes the name alone
+                        self.path.unlink()
                 raise
         self._identity = self.path.stat()
 
@@ -258,7 +261,8 @@ def _told(error: sqlite3.Error | ValueError, path: Path, verb: str) -> str:
     if kind == "SQLITE_ERROR" or isinstance(error, ValueError) or error.__class__ is sqlite3.DatabaseError:
         return f"{path} is damaged or no journal of slosh ({error}); --fresh starts the study over"
     kept = "every stop committed before is kept. Make room, then start the same command again"
-    return f"cannot {verb} {path}: {error}; {kept}" if verb == "write" else f"cannot {verb} {path}: {error}"
+    full = kind.startswith(("SQLITE_FULL", "SQLITE_IOERR"))
+    return f"cannot {verb} {path}: {error}" + (f"; {kept}" if verb == "write" or full else "")
 
 
 def _checksum(key: str, status: str, final: int, seconds: float, answer: str) -> str:

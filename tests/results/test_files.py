@@ -2,15 +2,21 @@
 
 import os
 import stat
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from slosh_cli.results.files import FileError, replacing, staging, try_targets
+from slosh_cli.results.files import FileError, finish_moves, replacing, staging, try_targets
 
 
 class HalfwayError(Exception):
     """What goes wrong halfway."""
+
+
+class KilledError(BaseException):
+    """Stands for the end of the process."""
 
 
 def test_the_new_file_takes_the_place_of_the_old(tmp_path: Path) -> None:
@@ -55,7 +61,7 @@ def test_the_data_reach_the_disk_before_the_name(tmp_path: Path, monkeypatch: py
     with staging(tmp_path / "run") as stage:
         (stage / "a").write_text("1")
         events.clear()
-    assert len(events) == 2  # the file and the folder
+    assert len(events) == 4  # the file, the list of names, the stage and the folder
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permission bits")
@@ -147,3 +153,36 @@ def test_targets_below_a_file_are_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="is not a folder"):
         try_targets(tmp_path / "file" / "run", ["run.h5"])
+
+
+@pytest.mark.parametrize("moved", range(5))
+def test_a_process_that_ends_while_files_move_leaves_the_new_ones_to_whoever_looks_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moved: int
+) -> None:
+    old, new = {"run.h5": "old", "slosh.png": "old", "notes.txt": "mine"}, {"run.h5": "new", "summary.csv": "new"}
+    for name, text in old.items():
+        (tmp_path / name).write_text(text)
+    unlink, replace, steps = Path.unlink, Path.replace, iter(range(10))
+
+    def counted(change: Callable[..., Any]) -> Callable[..., Any]:
+        def step(path: Path, *more: Any, **given: Any) -> Any:
+            if (path.parent == tmp_path or path.parent.suffix == ".whole") and next(steps) == moved:
+                raise KilledError
+            return change(path, *more, **given)
+
+        return step
+
+    def killed() -> None:
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "unlink", counted(unlink))
+            patch.setattr(Path, "replace", counted(replace))
+            patch.setattr("shutil.rmtree", lambda *_, **__: None)
+            with staging(tmp_path, owned=["run.h5", "slosh.png", "summary.csv"]) as stage:
+                for name, text in new.items():
+                    (stage / name).write_text(text)
+
+    with pytest.raises(KilledError):
+        killed()
+    finish_moves(tmp_path)
+    finish_moves(tmp_path)
+    assert {file.name: file.read_text() for file in tmp_path.iterdir()} == {"notes.txt": "mine"} | new
