@@ -39,12 +39,7 @@ class Difference:
     @property
     def label(self) -> str:
         """What people call it: its name without the unit, and whether it is of one wheel."""
-        words = self.name
-        for ending in ("_m_s", "_N_m", "_N", "_m", "_s"):
-            if words.endswith(ending):
-                words = words.removesuffix(ending)
-                break
-        return f"{words.replace('_', ' ')} ({self.meaning})"
+        return labelled(self.name, self.meaning)
 
     def change(self, place: int) -> float | None:
         """Run `place` minus the first run; None where one of both has no number."""
@@ -63,6 +58,15 @@ class Difference:
         return told | {
             name: [of(k) for k in others] for name, of in (("change", self.change), ("percent", self.percent))
         }
+
+
+def labelled(name: str, meaning: str) -> str:
+    """What people call an answer: its name without the unit, and what it means."""
+    for ending in ("_m_s", "_N_m", "_N", "_m", "_s", "_J", "_kg"):
+        if name.endswith(ending):
+            name = name.removesuffix(ending)
+            break
+    return f"{name.replace('_', ' ')} ({meaning})"
 
 
 def differing_inputs(runs: Sequence[AnyRun]) -> dict[str, list[Any]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from slosh_cli.application.differing import labelled
 from slosh_cli.application.input_tables import inputs_table
 from slosh_cli.application.replay import replay_data, surface_words
 from slosh_cli.report.html import page_table, page_text
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from slosh_cli.results.stored import History
 
 _PROVENANCE: Final = ("program", "program_version", "created", "python_version", "numpy_version", "numba_version")
+_PRESSED: Final = (
+    "A least load above the load at rest is no error: from the onset to the stop, resistance and brake press that "
+    "wheel down all the time, and its unloading is negative."
+)
 
 
 def write_report(source: str | Path, target: str | Path | None = None) -> Path:
@@ -64,9 +69,11 @@ def _verdict(history: History) -> str:
 
 def _run_tables(history: History) -> list[dict[str, Any]]:
     """Answers, checks, inputs, ledger and provenance."""
-    facts = history.attributes
+    facts, note = history.attributes, "Computed by the model, SI units; lists are wheels 1 to 4."
+    if any(least > rest for least, rest in zip(history.min_wheel_load_N, history.static_wheel_load_N, strict=True)):
+        note += f" {_PRESSED}"
     answers = [
-        (one.meaning, _words(getattr(history, one.name)), one.unit)
+        (labelled(one.name, one.meaning), _words(getattr(history, one.name)), one.unit)
         for one in history.table()
         if one.unit and hasattr(history, one.name)
     ]
@@ -86,9 +93,7 @@ def _run_tables(history: History) -> list[dict[str, Any]]:
         for one in getattr(history, "checks", ())
     ]
     return [
-        page_table(
-            "Answers", ("answer", "value", "unit"), answers, "Computed by the model, SI units; lists are wheels 1 to 4."
-        ),
+        page_table("Answers", ("answer", "value", "unit"), answers, note),
         page_table("Checks", ("check", "value", "limit", "verdict", "standing of the limit"), judged),
         inputs_table(history.scenario_text),
         page_table("Energy ledger", ("part", "J"), ledger, "Of the whole wagon at the end of the run."),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from slosh_cli.application.differing import listed
+from slosh_cli.application.differing import labelled, listed
 from slosh_cli.application.input_tables import inputs_table, vehicle_inputs_table
 from slosh_cli.application.train_comparison import train_differences
 from slosh_cli.report.html import page_table, page_text, plain_numbers
@@ -152,11 +152,11 @@ def _answers(train: TrainHistory) -> Iterator[tuple[str, str, str]]:
     found = train_differences([train])
     for one in found:
         value = one.values[0]
-        yield one.meaning, "none" if value is None else f"{value / one.per:.6g}", one.unit
+        yield one.label, "none" if value is None else f"{value / one.per:.6g}", one.unit
     told = {one.name for one in found}
     for answer in TrainResult.table():
         if answer.unit and answer.name in train.facts and answer.name not in told:
-            yield answer.meaning, f"{float(train.facts[answer.name]):.6g}", answer.unit
+            yield labelled(answer.name, answer.meaning), f"{float(train.facts[answer.name]):.6g}", answer.unit
 
 
 def _coupling(place: int, one: StoredPart) -> tuple[Any, ...]:

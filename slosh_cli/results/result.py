@@ -120,7 +120,7 @@ class Record(Answers):
         line=Told(4, "surface rise at an end wall, largest", ".2f", "m"))
     surface_limit_m: float = computed("m", "room above the still surface", Place.SURFACE, needed=True)
     min_wheel_load_N: PerWheel = computed(
-        "N", "least load from onset to stop, from the integrator's own steps", Place.WHEELS,
+        "N", "least load from onset to stop, from the integrator's own steps; it may exceed that at rest", Place.WHEELS,
         line=Told(2, "least / kN", ".1f", per=1e3))
     max_wheel_load_N: PerWheel = computed(
         "N", "largest load from onset to stop, from the integrator's own steps", Place.WHEELS,

@@ -17,6 +17,7 @@ from slosh_cli.scenario.presets import DEFAULT, TAKEN, Standing, find_preset
 from slosh_cli.scenario.schema import Scenario, TankScenario
 from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.tree import Spot, value_at
+from slosh_cli.scenario.units import shown
 from slosh_cli.scenario.yaml_text import parse
 
 YOURS: Final = "yours"
@@ -119,6 +120,13 @@ def _dotted(path: Path) -> str:
 
 
 def _words(value: Any) -> str:
+    """A value as text, numbers to six digits."""
     if isinstance(value, list):
         return f"[{', '.join(_words(item) for item in value)}]" if value else "none"
-    return _COMPUTED if value == {} else str(value)
+    if value == {}:
+        return _COMPUTED
+    number, gap, unit = str(value).partition(" ")
+    try:
+        return f"{shown(float(number))}{gap}{unit}" if "." in number or "e" in number else str(value)
+    except ValueError:
+        return str(value)

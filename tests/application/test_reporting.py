@@ -63,7 +63,7 @@ def test_inputs_tell_their_standing(run_file: Path, tmp_path: Path) -> None:
     cells = r"<td>contact.adhesion.mu0</td><td>0.55</td><td>default</td><td>assumed: usual</td>"
     assert re.search(cells, page)
     assert "<td>tank.length</td><td>15.5 m</td><td>yours</td><td></td>" in page
-    assert "<td>limits.axle_load</td><td>22500.0 kg</td><td>default</td><td>the program&#39;s own</td>" in page
+    assert "<td>limits.axle_load</td><td>22500 kg</td><td>default</td><td>the program&#39;s own</td>" in page
     assert "preset soft-track" in page
     assert "preset soft-track" not in write_report(run_file).read_text(encoding="utf-8")
 

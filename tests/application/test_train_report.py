@@ -89,7 +89,7 @@ def test_the_verdict_says_where_and_the_page_needs_nothing_else(train: TrainResu
 
 
 def test_inputs_are_told_once_for_all_that_are_alike(train: TrainResult, page: str) -> None:
-    assert ["braking.initial_speed", "2.7777777777777777 m/s", "yours", ""] in table_of(page, "Inputs of the train")
+    assert ["braking.initial_speed", "2.77778 m/s", "yours", ""] in table_of(page, "Inputs of the train")
     rows = table_of(page, "Inputs of the vehicles")
     fills = [row[1:] for row in rows if row[0] == "tank.fill"]
     assert fills == [["0.5", "yours", "", "1"], ["0.3", "yours", "", "2-5"]]

@@ -10,6 +10,8 @@ import pytest
 from stand_ins import Slosh
 
 from slosh_cli.cli.exit_codes import ExitCode
+from slosh_cli.results.data_sheet import data_sheet
+from slosh_cli.scenario import load_scenario
 
 TRAIN = """\
 format: 1
@@ -88,6 +90,24 @@ def test_check_says_that_it_is_a_train(slosh: Slosh, file: Path) -> None:
     assert outcome.code == ExitCode.DONE
     assert "a sound train of 3 vehicles, 51.0 m long" in outcome.out
     assert json.loads(slosh("check", file, "--json").out)["describes"] == "a train"
+
+
+def test_check_tells_of_every_kind_of_vehicle(slosh: Slosh, file: Path) -> None:
+    options = ("--set", "vehicles.1.braking.blocks={count: 2, force: 30 kN, friction: cast-iron}")
+    found = json.loads(slosh("check", file, "--json", *options).out)
+    assert [kind["vehicles"] for kind in found["kinds"]] == [[1], [2], [3]]
+    assert [kind["vehicles"] for kind in json.loads(slosh("check", file, "--json").out)["kinds"]] == [[1, 2], [3]]
+    alone = data_sheet(load_scenario("paper-80-solid", ["tank.fill=0.3"]))
+    for name in ("gross_mass_t", "fill", "slosh_period_s"):
+        assert found["kinds"][2]["data_sheet"][name] == alone[name]
+    assert found["kinds"][0]["brake"] == "blocks cast-iron, 2 x 30 kN"
+    assert found["inputs"]["braking.onset"] == {"value": "0.2 s", "standing": "yours", "source": ""}
+    told = slosh("check", file, *options).out
+    row = next(line for line in told.splitlines() if line.startswith("1 "))
+    assert f"{found['kinds'][0]['data_sheet']['tau']:.3f}" in row
+    assert "blocks cast-iron, 2 x 30 kN" in row
+    assert "(vehicles 3, " in told
+    assert "(the train's own file)" in told
 
 
 def test_couplings_with_slack_ask_for_a_finer_tolerance(slosh: Slosh, file: Path) -> None:

@@ -32,7 +32,8 @@ def test_each_value_has_its_standing_and_source() -> None:
     assert told["solver.time_limit"] == ("default", "the program's own")
     assert told["solver.tolerance"] == ("yours", "")
     assert told["tank.coefficients"][0] == told["track.domain"][0] == "computed"
-    assert found["track.gradient"].value == "[[0.0 m, 0.0], [300.0 m, 0.01]]"
+    assert found["track.gradient"].value == "[[0 m, 0], [300 m, 0.01]]"
+    assert (found["track.domain"].value, found["track.rail.youngs_modulus"].value) == ("computed", "2.059e11 Pa")
     assert not {"name", "format", "description", "presets"} & set(found)
 
 

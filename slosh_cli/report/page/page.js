@@ -22,13 +22,15 @@
     pen.strokeStyle = "#ddd"; pen.textAlign = "right";
     for (const part of [0, .5, 1]) { const v = low + part * (high - low); pen.beginPath(); pen.moveTo(left, y(v)); pen.lineTo(right, y(v)); pen.stroke(); pen.fillText(String(+v.toPrecision(3)), left - 6, y(v) + 4); }
     pen.textAlign = "left"; pen.fillText("0", left, height - 5); pen.textAlign = "right"; pen.fillText(last.toFixed(1) + " s", right, height - 5); pen.textAlign = "left";
+    const named = (line, name) => name + " " + (line.values[row] === null ? "none" : String(+line.values[row].toPrecision(4)));
+    const wide = chart.lines.reduce((sum, line) => sum + pen.measureText(named(line, line.name)).width + 14, 0) > right - left + 14;
     let place = left;
     chart.lines.forEach((line, k) => {
       pen.strokeStyle = pen.fillStyle = COLOURS[k % COLOURS.length]; pen.lineWidth = 1.4; pen.beginPath();
       let begun = false;
       line.values.forEach((value, i) => { if (value === null) { begun = false; return; } if (begun) pen.lineTo(x(data.time[i]), y(value)); else pen.moveTo(x(data.time[i]), y(value)); begun = true; });
       pen.stroke();
-      const value = line.values[row], words = line.name + " " + (value === null ? "none" : String(+value.toPrecision(4)));
+      const words = named(line, wide ? line.name.replace(/^\D+(?=\d)/, "") + ":" : line.name);
       pen.fillText(words, place, 27); place += pen.measureText(words).width + 14;
     });
     pen.strokeStyle = "#222"; pen.lineWidth = 1; pen.beginPath(); pen.moveTo(x(data.time[row]), top); pen.lineTo(x(data.time[row]), bottom); pen.stroke();
