@@ -236,15 +236,14 @@ def _for_all(file: TrainFile, key: str) -> str:
 
 def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:
     """The file of a vehicle's scenario; None, with a problem, where there is none or it describes a train."""
-    where, beside = ("vehicles", number, "scenario"), path.parent / entry.scenario
-    found = beside
-    if not os.path.isfile(beside):
+    where, found = ("vehicles", number, "scenario"), path.parent / entry.scenario
+    if not os.path.isfile(found):
         try:
             found = find_packaged(entry.scenario)
         except UsageError as error:
             rule = "must be the path of a scenario from this file, or the name of a packaged one"
             fix = error.message.rpartition("; ")[2]
-            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {beside}", fix))
+            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {path.parent / entry.scenario}", fix))
             return None
     if is_train_file(found):
         rule, fix = "must be the scenario of one vehicle", "name a scenario, or write that train's vehicles here"
