@@ -239,11 +239,11 @@ def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> P
     where, found = ("vehicles", number, "scenario"), path.parent / entry.scenario
     if not os.path.isfile(found):
         try:
-            found = find_packaged(entry.scenario)
+            return find_packaged(entry.scenario)
         except UsageError as error:
             rule = "must be the path of a scenario from this file, or the name of a packaged one"
             fix = error.message.rpartition("; ")[2]
-            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {path.parent / entry.scenario}", fix))
+            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {found}", fix))
             return None
     if is_train_file(found):
         rule, fix = "must be the scenario of one vehicle", "name a scenario, or write that train's vehicles here"
