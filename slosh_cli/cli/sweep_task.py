@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from slosh_cli.application.keeping import Keeping
 from slosh_cli.cli.exit_codes import ExitCode
@@ -20,6 +20,10 @@ from slosh_cli.report.study_pages import View, pages
 if TYPE_CHECKING:
     from slosh_cli.application.studies import OpenStudy
     from slosh_cli.study.plan import Study
+
+
+_LARGE: Final = 2000
+"""Stops whose planning is told of."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +45,16 @@ def carry_out(task: Task) -> ExitCode:
     from slosh_cli.application.studies import opened
 
     pages(task.study, (), task.view)  # a view that cannot be is refused before anything runs
+    _announce_plan(task)
     with opened(task.study, task.folder, fresh=task.fresh) as work:
         interrupted = _compute(task, work)
         return _conclude(task, work, interrupted=interrupted)
+
+
+def _announce_plan(task: Task) -> None:
+    """Say that a large study is planned: every stop is checked, which takes its time before the first one runs."""
+    if task.study.size > _LARGE:
+        note(f"{task.study.size:,} stops; each is checked and looked up in the journal before the first one runs")
 
 
 def _compute(task: Task, work: "OpenStudy") -> bool:
@@ -177,6 +188,7 @@ def estimate(task: Task) -> ExitCode:
     from slosh_cli.study.journal import JOURNAL, Journal
     from slosh_cli.study.runner import plan
 
+    _announce_plan(task)
     path = task.folder / JOURNAL
     known = path.exists() and not task.fresh
     with Journal(path, read_only=True) if known else nullcontext() as journal:
