@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 _ENDINGS: Final = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
+_LARGE: Final = 2000
+"""Stops whose planning is told of."""
+
+
 @dataclass(frozen=True)
 class Task:
     """A study and the way it is to be run."""
@@ -44,9 +48,16 @@ def carry_out(task: Task) -> ExitCode:
     from slosh_cli.application.studies import opened
 
     pages(task.study, (), task.view)  # a view that cannot be is refused before anything runs
+    _announce_plan(task)
     with opened(task.study, task.folder, fresh=task.fresh) as work:
         interrupted = _compute(task, work)
         return _conclude(task, work, interrupted=interrupted)
+
+
+def _announce_plan(task: Task) -> None:
+    """Say that a large study is planned: every stop is checked, which takes its time before the first one runs."""
+    if task.study.size > _LARGE:
+        note(f"{task.study.size:,} stops; each is checked and looked up in the journal before the first one runs")
 
 
 def _compute(task: Task, work: "OpenStudy") -> bool:
@@ -185,6 +196,7 @@ def estimate(task: Task) -> ExitCode:
     from slosh_cli.study.journal import JOURNAL, Journal
     from slosh_cli.study.runner import plan
 
+    _announce_plan(task)
     path = task.folder / JOURNAL
     known = path.exists() and not task.fresh
     with Journal(path, read_only=True) if known else nullcontext() as journal:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from os.path import isfile
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -236,14 +236,14 @@ def _for_all(file: TrainFile, key: str) -> str:
 
 def _source(document: Document, path: Path, number: int, entry: TrainEntry) -> Path | None:
     """The file of a vehicle's scenario; None, with a problem, where there is none or it describes a train."""
-    where, beside = ("vehicles", number, "scenario"), path.parent / entry.scenario
-    if not isfile(found := beside):
+    where, found = ("vehicles", number, "scenario"), path.parent / entry.scenario
+    if not os.path.isfile(found):
         try:
-            found = find_packaged(entry.scenario)
+            return find_packaged(entry.scenario)
         except UsageError as error:
             rule = "must be the path of a scenario from this file, or the name of a packaged one"
             fix = error.message.rpartition("; ")[2]
-            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {beside}", fix))
+            document.add(Finding(where, rule, f"`{entry.scenario}`, and there is no {found}", fix))
             return None
     if is_train_file(found):
         rule, fix = "must be the scenario of one vehicle", "name a scenario, or write that train's vehicles here"

@@ -170,17 +170,14 @@ def parse(text: str, file: str) -> Document:
     A text that is YAML but no mapping has that among its problems.
     """
     document = Document()
-    problem = None
-    node = None
-    try:
-        node = _Loader(text).get_single_node()
-        if node is not None:
+    node = _composed(text)
+    if not isinstance(node, Problem) and node is not None:
+        try:
             document.data = _Builder(document).build(node, (), node)
-    except (yaml.YAMLError, RecursionError) as error:
-        line, *words = _syntax(error, text)
-        problem = Problem(line, "", *words)
-    if problem is not None:  # raised out here, without the context: a RecursionError's is too deep to be pickled
-        raise ScenarioError(file, (problem,))
+        except RecursionError as error:
+            node = Problem(None, "", *_syntax(error, text)[1:])
+    if isinstance(node, Problem):  # raised out here, without the context: a RecursionError's is too deep to be pickled
+        raise ScenarioError(file, (node,))
     if not isinstance(document.data, dict) and not document.problems:
         given = "an empty file" if node is None else plain(document.data)
         fix = "write `format: 1`, `name: ...` and so on, or start from `slosh init`"
@@ -207,6 +204,16 @@ def parse_override(text: str, path: Path, place: str) -> tuple[Any, list[Problem
 def dump(data: Mapping[str, Any]) -> str:
     """Plain data as YAML."""
     return yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=110)
+
+
+@lru_cache(maxsize=2)
+def _composed(text: str) -> yaml.Node | Problem | None:
+    """The node of a file's text, or why it is no YAML. A command asks several times: what kind of file it is, too."""
+    try:
+        return _Loader(text).get_single_node()
+    except (yaml.YAMLError, RecursionError) as error:
+        line, *words = _syntax(error, text)
+        return Problem(line, "", *words)
 
 
 @lru_cache(maxsize=256)

@@ -82,7 +82,7 @@ def expanded(spec: str, bare_unit: str = "") -> tuple[str, ...]:
         numeric = len(known) == len(parts)
         unit = (known[-1][1] or unit) if numeric else unit
         if numeric and len(parts) > 1:
-            groups.append(_range(entry, parts, unit))
+            groups.append(_counted(entry, parts, unit))
         else:
             groups.append([f"{entry} {unit}" if numeric and unit and not known[0][1] else entry])
     return tuple(dict.fromkeys(value for group in reversed(groups) for value in group))
@@ -129,6 +129,15 @@ def _split(text: str, separator: str) -> Iterator[str]:
         else:
             depth += (letter in _OPENING) - (letter in _CLOSING)
     yield text[start:]
+
+
+def _counted(entry: str, parts: list[str], unit: str) -> list[str]:
+    """The values of a range, whose numbers may be beyond what can be counted with."""
+    try:
+        return _range(entry, parts, unit)
+    except ArithmeticError:
+        rule = "must be a range whose numbers can be counted through"
+        raise ValueRefused(rule, f"`{entry}`", "write numbers of an ordinary size, such as `2.5:30:2.5`") from None
 
 
 def _range(entry: str, parts: list[str], unit: str) -> list[str]:

@@ -19,6 +19,7 @@ _PAPER_WAGON: Final = "paper-80-liquid"
 """The packaged scenario that a study without one is about."""
 _PAPER_STUDY: Final = "paper-wagon"
 """Name of a study without a scenario."""
+_MOST_STOPS: Final = 200_000
 _SPEEDS: Final = "80,160"
 _TORQUES: Final = "2.5:30:2.5"
 _AROUND_SPEED: Final = (0.75, 1.0, 1.25)
@@ -74,10 +75,20 @@ def grid(
 def _completed(wishes: Wishes, file: str, name: str, base: Scenario | TrainScenario, axes: tuple[Axis, ...]) -> Study:
     if isinstance(base, TrainScenario):
         asked = _train_axes(wishes, file, axes)
-        return TrainStudy(name, base, asked, file, wishes.histories, _kept(wishes.overrides, asked))
+        return _feasible(TrainStudy(name, base, asked, file, wishes.histories, _kept(wishes.overrides, asked)))
     axes = _with_axes(axes, _braking_axes(wishes, base, axes, own=file != _PAPER_STUDY))
     axes = (*(axis for axis in axes if axis.key != LIQUID), _liquid_axis(wishes, base, axes))
-    return WagonStudy(name, base, axes, file, wishes.histories)
+    return _feasible(WagonStudy(name, base, axes, file, wishes.histories))
+
+
+def _feasible(study: Study) -> Study:
+    """The study, unless nobody can wait for it: it would take its time even to plan."""
+    if study.size > _MOST_STOPS:
+        longest = max(study.axes, key=lambda axis: len(axis.values))
+        rule = f"must have at most {_MOST_STOPS:,} stops"
+        fix = f"widen the steps, of `{longest.key}` first, which takes {len(longest.values):,} values"
+        raise UsageError(f"the study {rule}; given {study.size:,}; {fix}, or make several studies of it", study.file)
+    return study
 
 
 def _train_axes(wishes: Wishes, file: str, axes: tuple[Axis, ...]) -> tuple[Axis, ...]:

@@ -29,7 +29,7 @@ SOLID: Final = "rigid"
 _COEFFICIENTS: Final = "tank.coefficients"
 
 _TRIES: Final = 200
-"""Combinations in which a value may prove itself before it is refused."""
+"""Combinations in which a value may prove itself before it is refused, and values of a shape that are tried."""
 _LONGEST_INTERVAL: Final = 100.0
 """Output interval in s of a stop whose history nobody keeps."""
 
@@ -196,7 +196,8 @@ class WagonStudy(Study):
         choosing = [number for number, axis in enumerate(self.axes) if axis.key in (LIQUID, _COEFFICIENTS)]
         for number in shaping:
             self._check_common_coefficients(self.axes[number])
-            for places in product(*(range(len(self.axes[n].values)) for n in (number, *choosing))):
+            some = range(0, len(self.axes[number].values), max(1, len(self.axes[number].values) // _TRIES))
+            for places in product(some, *(range(len(self.axes[n].values)) for n in choosing)):
                 index = self._index(dict(zip((number, *choosing), places, strict=True)))
                 try:
                     self.stop(index)

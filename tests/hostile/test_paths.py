@@ -67,7 +67,7 @@ def test_an_output_that_no_system_takes_is_refused(name: str, good: Good) -> Non
 def test_the_base_and_the_wagons_of_a_file_may_be_named_badly(folder: Path, good: Good) -> None:
     for name in ("x" * 300, r"a\0b", r"\ud83d", "../" * 100, "/dev/zero", ".", "", r"\e[31m"):
         (folder / "study.yaml").write_text(f'base: "{name}"\nvary: {{tank.fill: [0.3, 0.5]}}\n', encoding="utf-8")
-        answer("sweep", "study.yaml", "--estimate", code=2)
+        answer("sweep", "study.yaml", "--dry-run", code=2)
         (folder / "train.yaml").write_text(good.train.replace("paper_80.yaml", f'"{name}"'), encoding="utf-8")
         answer("check", "train.yaml")
 
