@@ -9,10 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from slosh_cli.report.html import page_table, page_text
+from slosh_cli.report.html import page_table, page_text, short_number
 from slosh_cli.results.files import FileError
 
 _MOST_STOPS: Final = 2000
+_NOTE: Final = "A click on a column's name sorts. Six digits are shown; the CSV has all of them."
 _WORST: Final = (
     ("longest braking distance", "braking_distance_m", "m"),
     ("largest wheel unloading", "max_wheel_unloading", "1"),
@@ -31,7 +32,13 @@ def study_page(folder: Path) -> str:
     worst = list(_worst_cases(head, rows))
     tables = [
         page_table("Worst cases", ("what", "value", "unit", "stop"), worst, "The stop of the study that is furthest."),
-        page_table("Stops", head, rows, "A click on a column's name sorts.", sortable=True),
+        page_table(
+            "Stops",
+            head,
+            rows,
+            _NOTE,
+            sortable=True,
+        ),
     ]
     figures = {name: folder / name for name in figure_files(folder) if name.endswith(".png")}
     return page_text({"title": f"Study {folder.resolve().name}", "tables": tables}, {}, figures)
@@ -59,7 +66,7 @@ def _worst_cases(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator
     """The stops that are furthest, for each answer that the table has; first how many did not stop."""
     status = head.index("status")
     yield "runs that did not stop", str(sum(row[status] != "stopped" for row in rows)), "1", f"of {len(rows)}"
-    first = list(head[: head.index("braking_distance_m")]) if "braking_distance_m" in head else list(head[:1])
+    first = _places(head)
     for what, column, unit in _WORST:
         numbers = (
             [(float(row[head.index(column)]), row) for row in rows if row[head.index(column)]] if column in head else []
@@ -67,4 +74,17 @@ def _worst_cases(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator
         numbers = [one for one in numbers if np.isfinite(one[0])]
         if numbers:
             value, row = max(numbers, key=lambda one: one[0])
-            yield what, f"{value:.6g}", unit, ", ".join(f"{name} {row[k]}" for k, name in enumerate(first))
+            yield what, f"{value:.6g}", unit, ", ".join(f"{name} {short_number(row[k])}" for k, name in first)
+
+
+def _places(head: Sequence[str]) -> list[tuple[int, str]]:
+    """Columns that tell which stop of the grid a row is: all that are no answer of a stop, a wagon's or a train's."""
+    from slosh_cli.results.answers import Place, Shown
+    from slosh_cli.results.result import Result
+    from slosh_cli.results.train_result import TrainResult
+
+    told = {"ratio_to_solid", "history"}
+    for kind in (Result, TrainResult):
+        for one in kind.in_table(Shown.STUDY, Place.DISTANCE):
+            told |= set(one.columns)
+    return [(k, name) for k, name in enumerate(head) if name not in told]

@@ -25,10 +25,12 @@ _QUESTIONS: Final = {
     "track": "Track",
     "product": "Product",
     "temperature": "Temperature of the product",
-    "gross": "Mass of the wagon with its load, such as 80 t",
+    "gross": "Mass of the wagon with its load, such as 80 t, or 60 % of the tank's volume",
     "brake": "Brake",
     "speed": "Speed before the stop",
 }
+_LOAD: Final = "What is in the tank: '60 %' of its volume, '52.8 m^3' or '44 t'."
+_CAPACITY: Final = "Volume of the tank, '88 m^3'; its length follows. Default: that of the wagon's preset."
 _FILE: Final = "File to write; the scenario takes its name. Default: its own name, in the current folder."
 
 
@@ -51,13 +53,15 @@ def init_command(
     product: Annotated[str | None, option("--product", "PRESET", "Product. Default: diesel.")] = None,
     brake: Annotated[str | None, option("--brake", "PRESET", "Brake. Default: k-blocks.")] = None,
     temperature: Annotated[str | None, option("--temperature", "T", "Of the product. Default: 15 C.")] = None,
-    gross: Annotated[str | None, option("--gross", "MASS", "Wagon with its load, such as 90t.")] = None,
+    load: Annotated[str | None, option("--load", "AMOUNT", _LOAD)] = None,
+    gross: Annotated[str | None, option("--gross", "MASS", "Wagon with its load, in place of --load: '90 t'.")] = None,
+    capacity: Annotated[str | None, option("--capacity", "VOLUME", _CAPACITY)] = None,
     speed: Annotated[str | None, option("--speed", "SPEED", "Before the stop. Default: 100 km/h.")] = None,
 ) -> ExitCode:
     """Write a commented scenario to start from. Never overwrites a file.
 
-    With --wagon, --product and so on it is written out of presets (`slosh presets` lists them). Without anything, on a
-    terminal, it asks.
+    With --wagon, --load and so on it is written out of presets (`slosh presets` lists them): --wagon zacns-like --load
+    '60 %'. Without anything, on a terminal, it asks.
     """
     from slosh_cli.scenario.packaged import packaged_scenarios, packaged_trains
 
@@ -65,7 +69,7 @@ def init_command(
         say("\n".join(packaged_scenarios() | packaged_trains()))
         return ExitCode.DONE
     chosen = {"wagon": wagon, "track": track, "product": product, "brake": brake}
-    chosen |= {"temperature": temperature, "gross": gross, "speed": speed}
+    chosen |= {"temperature": temperature, "load": load, "gross": gross, "capacity": capacity, "speed": speed}
     given = {key: value for key, value in chosen.items() if value is not None}
     if name and given:
         raise UsageError(f"must stand alone or be left out; given `{name}` beside options for presets", name)
@@ -104,12 +108,15 @@ def _of_presets(given: dict[str, str], output: Path | None) -> ExitCode:
     from slosh_cli.scenario.words import file_safe
 
     if given:
-        missing = [f"--{key}" for key in ("wagon", "gross") if key not in given]
-        if missing:
-            raise UsageError(f"must be given with the others: {', '.join(missing)}; see `slosh presets`", missing[0])
+        if "wagon" not in given:
+            raise UsageError("must be given with the others: --wagon; see `slosh presets`", "--wagon")
+        if ("load" in given) == ("gross" in given):
+            raise UsageError("exactly one of --load and --gross must be given: '60 %', '52.8 m^3' or '44 t'", "--load")
         chosen = _USUAL | given
     else:
         chosen = {key: typer.prompt(question, default=_USUAL.get(key)) for key, question in _QUESTIONS.items()}
+        if chosen["gross"].rstrip().endswith("%"):
+            chosen["load"] = chosen.pop("gross")
     file = output or Path(f"{chosen['wagon']}-{chosen['product']}.yaml")
     _write_new(file, composed(file_safe(file.stem), chosen))
     say(f"{file} written. Change it, check it with `slosh check {file}`, run it with `slosh run {file}`.")

@@ -25,7 +25,9 @@ def page_text(facts: Mapping[str, Any], data: Mapping[str, Any], figures: Mappin
     folder = files("slosh_cli.report").joinpath("page")
     names = ("base.html", "page.css", "page.js", "train.js")
     parts = {name: folder.joinpath(name).read_text(encoding="utf-8") for name in names}
-    page = jinja2.Environment(autoescape=True, undefined=jinja2.ChainableUndefined).from_string(parts["base.html"])
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.ChainableUndefined)
+    environment.filters["short"] = short_number
+    page = environment.from_string(parts["base.html"])
     text = page.render(
         facts,
         data=data,
@@ -44,6 +46,16 @@ def page_table(
 ) -> dict[str, Any]:
     """A table of a page: its rows are of cells that become text."""
     return {"title": title, "head": head, "rows": rows, "note": note, "sortable": sortable}
+
+
+def short_number(text: Any) -> str:
+    """A cell of a table to six digits where it is a number of more; any other as it is."""
+    told = str(text)
+    try:
+        short = f"{float(told):.6g}"
+    except ValueError:
+        return told
+    return short if len(short) < len(told) and math.isfinite(float(told)) else told
 
 
 def plain_numbers(values: Iterable[Any]) -> list[float | None]:

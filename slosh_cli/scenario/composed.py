@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from slosh_cli.errors import ValueRefused
 from slosh_cli.scenario.base import Path
+from slosh_cli.scenario.leaves import Quantity, Range
 from slosh_cli.scenario.presets import Preset, Standing, find_preset
 from slosh_cli.scenario.schema import parse_scenario
-from slosh_cli.scenario.units import plain
+from slosh_cli.scenario.units import parse_quantity, percentage, plain, shown
 
 _CHOSEN: Final = "chosen"
 _ASSUMED: Final = "assumed"
@@ -23,6 +25,9 @@ _OTHERS: Final[tuple[tuple[str, str], ...]] = (
     ("braking.onset", "0.5 s"),
 )
 """What no preset says."""
+_SHARES: Final = (0.8, 1.25)
+"""Sizes of a tank over that of its preset: beyond, the wagon under it is another one."""
+_VOLUME: Final = Quantity("volume", Range(0.0, 1e5, above=True), "52.8 m^3")
 _ORDER: Final = ("wagon", "tank", "track", "contact", "braking", "limits")
 
 
@@ -30,8 +35,10 @@ def composed(name: str, chosen: Mapping[str, str]) -> str:
     """The text of a scenario of presets and values.
 
     `chosen` has presets by their kinds (`wagon`, `track`, `product`, `brake`), `temperature` (a number of degC with or
-    without `C`), `gross` and `speed` (texts with units). Raises ValueRefused where a name or the temperature is wrong,
-    ScenarioError where the scenario is not sound: a gross mass that does not fit into the tank, say.
+    without `C`), `speed` and one of `gross` and `load` (texts with units; of `load` also per cent of the tank's
+    volume). With a `capacity` the tank's length is that of this volume. Raises ValueRefused where a name, the
+    temperature, the load or the capacity is wrong, ScenarioError where the scenario is not sound: a gross mass that
+    does not fit into the tank, say.
     """
     presets = [find_preset(chosen[kind], kind) for kind in ("wagon", "track", "product", "brake")]
     leaves: dict[Path, Standing] = {}
@@ -45,11 +52,54 @@ def composed(name: str, chosen: Mapping[str, str]) -> str:
     text = f"{round(product.density(celsius), 1)} kg/m^3"
     leaves[density] = Standing(text, leaves[density].standing, f"at {celsius:g} C, {leaves[density].source}")
     leaves |= {tuple(key.split(".")): Standing(value, _ASSUMED, "usual") for key, value in _OTHERS}
-    leaves[("tank", "gross_mass")] = Standing(chosen["gross"], _CHOSEN, "mass of the wagon with its load")
+    leaves |= _sized(wagon=presets[0].name, leaves=leaves, capacity=chosen.get("capacity"))
+    leaves |= _loaded(leaves, chosen)
     leaves[("braking", "initial_speed")] = Standing(chosen["speed"], _CHOSEN, "speed at the start of the run")
     found = _written(name, presets, celsius, leaves)
     parse_scenario(found, name)
     return found
+
+
+def _sized(wagon: str, leaves: Mapping[Path, Standing], capacity: str | None) -> dict[Path, Standing]:
+    """The length of a tank with flat ends of a `capacity`; nothing without one."""
+    if capacity is None:
+        return {}
+    own, wanted = _capacity(leaves), _VOLUME.parse(capacity)
+    if not _SHARES[0] <= wanted / own <= _SHARES[1]:
+        rule = f"must be from {_SHARES[0]:g} to {_SHARES[1]:g} times the {own:.1f} m^3 of {wagon}"
+        raise ValueRefused(rule, plain(capacity), "choose a wagon of `slosh presets` that is nearer to it")
+    length = ("tank", "length")
+    text = f"{round(_metres(leaves, length) * wanted / own, 3):g} m"
+    return {length: Standing(text, _CHOSEN, f"flat ends, so that the tank holds {shown(wanted)} m^3")}
+
+
+def _loaded(leaves: Mapping[Path, Standing], chosen: Mapping[str, str]) -> dict[Path, Standing]:
+    """What is in the tank, by the key that the scenario has for it."""
+    if "load" not in chosen:
+        told = Standing(chosen["gross"], _CHOSEN, "mass of the wagon with its load")
+        return {("tank", "gross_mass"): told}
+    load = chosen["load"].strip()
+    share, whole = percentage(load), _capacity(leaves)
+    if share is not None:
+        text = f"{round(share * whole, 3):g} m^3"
+        return {("tank", "volume"): Standing(text, _CHOSEN, f"{load} of the {shown(round(whole, 3))} m^3 of the tank")}
+    for dimension in ("volume", "mass"):
+        try:
+            parse_quantity(load, dimension)
+        except ValueRefused:
+            continue
+        return {("tank", dimension): Standing(load, _CHOSEN, f"{dimension} of the liquid")}
+    rule = "must be a share of the tank's volume, a volume or a mass of the liquid"
+    raise ValueRefused(rule, plain(load), "write such as `60 %`, `52.8 m^3` or `44 t`")
+
+
+def _capacity(leaves: Mapping[Path, Standing]) -> float:
+    """Volume of a preset's tank, a lying cylinder, m^3."""
+    return 0.25 * math.pi * _metres(leaves, ("tank", "diameter")) ** 2 * _metres(leaves, ("tank", "length"))
+
+
+def _metres(leaves: Mapping[Path, Standing], path: Path) -> float:
+    return parse_quantity(leaves[path].value, "length", None, "3 m")
 
 
 def _celsius(text: str) -> float:

@@ -95,6 +95,16 @@ def test_a_study_has_its_worst_cases(tmp_path: Path) -> None:
     assert "Download CSV" in page
 
 
+def test_the_worst_case_tells_what_was_varied_and_digits_are_few(tmp_path: Path) -> None:
+    """A key of one's own stands after the status. The table shows six digits and keeps all for the download."""
+    head = "v0_km_h,torque_kN_m,liquid,braking_distance_m,status,tank_fill,ratio_to_solid,max_wheel_unloading\n"
+    rows = "100.0,2.5,rigid,299.2456420844567,stopped,0.2,,0.2\n100.0,2.5,rigid,400,stopped,0.9,1.1,0.1\n"
+    (tmp_path / "braking_distance.csv").write_text(head + rows)
+    page = write_report(tmp_path).read_text(encoding="utf-8")
+    assert "<td>400</td><td>m</td><td>v0_km_h 100, torque_kN_m 2.5, liquid rigid, tank_fill 0.9</td>" in page
+    assert '<td title="299.2456420844567">299.246</td>' in page
+
+
 @pytest.mark.parametrize("table", [None, "", TABLE, "a,b\n1,2\n", TABLE + "80,8\n"])
 def test_a_folder_without_the_rows_of_a_study_is_refused(tmp_path: Path, table: str | None) -> None:
     if table is not None:

@@ -196,6 +196,7 @@ def test_init_writes_a_scenario_of_presets_and_never_overwrites(slosh: Slosh, tm
         (["--temperature", "90"], "must be from -20 to 50 C"),
         (["--product", "k-blocks"], "must be the name of a product preset"),
         (["tank-wagon"], "must stand alone"),
+        (["--load", "60 %"], "exactly one of --load and --gross"),
     ],
 )
 def test_init_writes_nothing_that_is_not_sound(options: list[str], told: str, slosh: Slosh, tmp_path: Path) -> None:
@@ -219,6 +220,9 @@ def test_init_asks_on_a_terminal_and_nowhere_else(
     monkeypatch.setattr("slosh_cli.cli.init._on_a_terminal", lambda: True)
     assert slosh("init").code == 0
     assert load_scenario(tmp_path / "15-9049-diesel.yaml").wagon.pivot_spacing == 7.8
+    answers |= {"Wagon": "zacns-like", "Mass": "60 %"}
+    assert slosh("init").code == 0
+    assert load_scenario(tmp_path / "zacns-like-diesel.yaml").tank.volume == pytest.approx(52.2, abs=0.1)
 
 
 def test_presets_are_listed_and_printed_with_their_sources(slosh: Slosh) -> None:

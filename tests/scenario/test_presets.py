@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from slosh_cli.errors import ScenarioError, ValueRefused
+from slosh_cli.errors import ScenarioError, SloshError, ValueRefused
 from slosh_cli.scenario import Scenario, json_schema, load_scenario, parse_scenario, scenario_to_yaml
 from slosh_cli.scenario.amounts import tare_of
 from slosh_cli.scenario.composed import composed
@@ -15,6 +15,7 @@ from slosh_cli.scenario.document import Document, Origin
 from slosh_cli.scenario.presets import every_preset, expand, find_preset
 from slosh_cli.scenario.schema_train import TrainFile
 from slosh_cli.scenario.yaml_text import parse
+from slosh_cli.section import section_of
 from slosh_cli.study.key import stop_key
 
 _TEXT = """\
@@ -230,6 +231,31 @@ def test_a_train_says_all_of_a_part_or_nothing() -> None:
 def test_a_mass_that_does_not_fit_is_refused() -> None:
     with pytest.raises(ScenarioError, match=r"tank\.gross_mass: .*the tank holds"):
         composed("own", _CHOSEN | {"gross": "120 t"})
+
+
+@pytest.mark.parametrize(("load", "volume"), [("60 %", 52.8), ("50 m^3", 50.0), ("42 t", 50.0), ("42000kg", 50.0)])
+def test_a_load_is_a_share_a_volume_or_a_mass(load: str, volume: float) -> None:
+    """The capacity of 88 m^3 makes the tank longer, and a share is of that capacity."""
+    chosen = {key: value for key, value in _CHOSEN.items() if key != "gross"}
+    tank = parse_scenario(composed("own", chosen | {"capacity": "88 m^3", "load": load})).tank
+    assert math.pi * (0.5 * tank.height) ** 2 * tank.length == pytest.approx(88.0, abs=0.01)
+    assert section_of(tank).area(tank.fill * tank.height) * tank.length == pytest.approx(volume, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"load": "60"}, "write such as `60 %`"),
+        ({"load": "60 km"}, "write such as `60 %`"),
+        ({"load": "120 %"}, "the tank holds"),
+        ({"load": "60 %", "capacity": "40 m^3"}, "must be from 0.8 to 1.25 times the 87.0 m^3 of zacns-like"),
+        ({"load": "60 %", "capacity": "88 m"}, "88 m"),
+    ],
+)
+def test_a_load_or_capacity_that_cannot_be_is_refused(wrong: dict[str, str], told: str) -> None:
+    chosen = {key: value for key, value in _CHOSEN.items() if key != "gross"}
+    with pytest.raises(SloshError, match=re.escape(told)):
+        composed("own", chosen | wrong)
 
 
 def test_the_editor_schema_allows_use() -> None:

@@ -112,7 +112,7 @@
       const rows = [...body.rows].sort((a, b) => text(a) === "" || text(b) === "" ? order(text(a), text(b)) : (down ? -1 : 1) * order(text(a), text(b)));
       body.append(...rows);
     }));
-    const quoted = (cell) => "\"" + cell.textContent.replace(/"/g, "\"\"") + "\"";
+    const quoted = (cell) => "\"" + (cell.title || cell.textContent).replace(/"/g, "\"\"") + "\"";
     table.closest("section").querySelector(".download").addEventListener("click", () => {
       const text = [...table.rows].map((row) => [...row.cells].map(quoted).join(",")).join("\r\n");
       const link = document.createElement("a"); link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" })); link.download = table.closest("section").querySelector("h2").textContent.toLowerCase().replace(/\W+/g, "-") + ".csv"; link.click();
