@@ -74,6 +74,7 @@ docs: $(DOCS_READY)
 pages: $(READY)
 	$(BIN)/python docs/answers.py
 	$(BIN)/python docs/reference.py
+	$(BIN)/python docs/gallery.py
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
