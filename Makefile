@@ -86,6 +86,7 @@ docs: $(DOCS_READY)
 pages: $(READY)
 	$(BIN)/python docs/answers.py
 	$(BIN)/python docs/reference.py
+	$(BIN)/python docs/gallery.py
 
 # the locks of all environments with the hashes of their packages; versions stay, but for `make lock UPGRADE=--upgrade`
 UPGRADE ?=

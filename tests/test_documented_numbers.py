@@ -21,10 +21,10 @@ from slosh_cli.cli import main
 DOCUMENTS = ["README.md", *(f"docs/{page.name}" for page in sorted((ROOT / "docs").glob("*.md")))]
 MADE_BY_A_SCRIPT = {
     "docs/answers.md", "docs/baffles.md", "docs/identifiability.md", "docs/real-brakes.md", "docs/train-couplers.md",
-    "docs/keys.md", "docs/commands.md", "docs/presets.md", "docs/api.md",
+    "docs/keys.md", "docs/commands.md", "docs/presets.md", "docs/api.md", "docs/gallery.md",
 }  # fmt: skip
-"""Compared with what makes them in results/test_answers.py, validation/test_validation_documents.py and
-test_reference_pages.py."""
+"""Compared with what makes them in results/test_answers.py, validation/test_validation_documents.py,
+test_reference_pages.py and test_gallery.py."""
 PHRASES = tomllib.loads((ROOT / "tests/data/documented_numbers.toml").read_text(encoding="utf-8"))["phrase"]
 TABLE_OF_THE_PAGE = "the table of the page"
 PLAIN_CODE = "tests/acceptance/test_against_plain_code.py"

@@ -13,8 +13,8 @@ from slosh_cli.version import __version__
 
 _COMMANDS: Final = {
     "init": "tutorial", "presets": "presets", "check": "scenario", "run": "runs", "sweep": "studies", "find": "find",
-    "optimum": "find", "compare": "which-liquid", "tank": "tank", "plot": "runs", "report": "tutorial",
-    "animate": "runs", "schema": "keys", "validate": "theory",
+    "optimum": "find", "compare": "which-liquid", "tank": "tank", "plot": "gallery", "report": "tutorial",
+    "animate": "gallery", "schema": "keys", "validate": "theory",
 }  # fmt: skip
 """In the order of the help, each with the page of the documentation that shows it."""
 

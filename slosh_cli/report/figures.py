@@ -161,9 +161,7 @@ def _brake(record: Record) -> Figure:
 def _line(record: Record) -> Figure:
     """The stop against the distance, and under it the line: its height with the gradient, the level of its rails."""
     position, rows = record.channels["position"], _line_rows(record)
-    figure, (speed, loads, *under) = _panels(
-        record, "The stop on its line", [1.0, 1.0, *(0.9 for _ in rows)], height=9.0
-    )
+    figure, (speed, loads, *under) = _panels(record, "The stop on its line", [1.0, 1.0, *[0.9] * len(rows)], height=9.0)
     speed.plot(position, record.channels["speed"] * 3.6, color=INK)
     speed.set_ylabel("speed / km/h")
     speed.set_ylim(bottom=min(0.0, float(record.channels["speed"].min()) * 3.6))
@@ -172,8 +170,11 @@ def _line(record: Record) -> Figure:
     loads.set_ylabel("normal force\nper wheel / kN")
     _legend(loads, columns=2)
     for axes, (label, values) in zip(under, rows, strict=True):
-        axes.fill_between(position, values, float(values.min()) - 0.1 * (np.ptp(values) or 1.0), color="#d9d9d9")
+        low, high, size = float(values.min()), float(values.max()), float(np.abs(values).max()) or 1.0
+        room = 0.1 * (high - low if high - low > 1e-6 * size else size)  # what stays the same has a scale, too
+        axes.fill_between(position, values, low - room, color="#d9d9d9")
         axes.plot(position, values, color=INK, linewidth=1.2)
+        axes.set_ylim(low - room, high + room)
         axes.set_ylabel(label)
     onset = float(np.interp(record.onset_s, record.time, position))
     for axes in (speed, loads, *under):

@@ -136,7 +136,7 @@ def _draw_panel(axes: Axes, page: Page, panel: StopsPanel, looks: dict[str, dict
     if page.ticks:
         axes.set_xticks(range(len(page.ticks)), list(page.ticks))
     places = [mark.x for marks in panel.curves.values() for mark in marks]
-    room = 0.05 * (max(places) - min(places)) or 0.5
+    room = (0.12 if labels else 0.05) * (max(places) - min(places)) or 0.5  # a name stands beside no tick
     axes.set_xlim(min(places) - room, max(places) + room)
     return labels
 

@@ -92,6 +92,11 @@ def _axes(train: TrainHistory, title: str, across: str, up: str) -> tuple[Figure
     return figure, axes
 
 
+def _legend(figure: Figure, axes: Any, columns: int = 4) -> None:
+    """What the lines mean, under the picture: no line is covered."""
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=columns)
+
+
 def _coupling_forces(train: TrainHistory) -> Figure:
     """Forces of a few couplings against time."""
     figure, axes = _axes(train, "Coupling forces", "time / s", "force / kN, compression positive")
@@ -99,7 +104,7 @@ def _coupling_forces(train: TrainHistory) -> Figure:
         look = {"color": _GREYS[style], "linestyle": _LINES[style], "label": f"vehicles {place + 1} and {place + 2}"}
         axes.plot(train.time, train.couplings[place].channels["force"] / 1e3, **look)
     axes.axhline(0.0, color=MUTED, linewidth=0.8)
-    axes.legend()
+    _legend(figure, axes)
     return figure
 
 
@@ -120,7 +125,7 @@ def _coupling_extremes(train: TrainHistory) -> Figure:
     above.set_ylim(bottom=0.0)
     below.set_ylim(bottom=0.0)
     below.xaxis.get_major_locator().set_params(integer=True)
-    above.legend()
+    _legend(figure, above)
     return figure
 
 
@@ -133,7 +138,7 @@ def _brake_wave(train: TrainHistory) -> Figure:
     axes.plot([one.facts["onset_s"] for one in train.vehicles], vehicles, color=INK, label="brakes set in")
     full = [_first_time(train, one.channels["brake_application"], _APPLIED) for one in train.vehicles]
     axes.plot(full, vehicles, color=INK, linestyle=_LINES[1], label=f"{_APPLIED:.0%} of the full brake")
-    axes.legend(loc="lower right")
+    _legend(figure, axes)
     figure.colorbar(drawn, ax=axes, label="force / kN, compression positive")
     return figure
 
@@ -152,7 +157,7 @@ def _train_speed(train: TrainHistory) -> Figure:
         label = f"vehicle {place + 1}: {one.facts['distance_m']:.1f} m from its onset"
         look = {"color": _GREYS[style], "linestyle": _LINES[style], "label": label}
         axes.plot(train.time, one.channels["speed"] * 3.6, **look)
-    axes.legend()
+    _legend(figure, axes, columns=2)
     return figure
 
 
