@@ -75,6 +75,7 @@ pages: $(READY)
 	$(BIN)/python docs/answers.py
 	$(BIN)/python docs/reference.py
 	$(BIN)/python docs/gallery.py
+	$(BIN)/python docs/notebooks.py
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
