@@ -198,9 +198,9 @@ def shrink(file: Path, target: Path) -> None:
     """A picture of modest size."""
     with Image.open(file if file.suffix == ".gif" else file.with_suffix(".png")) as found:
         if file.suffix == ".gif":
-            frames = [frame.copy() for frame in list(ImageSequence.Iterator(found))[::FRAMES]]
+            frames = [frame.copy() for place, frame in enumerate(ImageSequence.Iterator(found)) if place % FRAMES == 0]
             pause = FRAMES * found.info["duration"]
-            frames[0].save(target, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=True)
+            frames[0].save(target, save_all=True, append_images=frames[1:], duration=pause, loop=0)
             return
         reduced(found, WIDTH).save(target, optimize=True)
 
