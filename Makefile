@@ -87,6 +87,7 @@ pages: $(READY)
 	$(BIN)/python docs/answers.py
 	$(BIN)/python docs/reference.py
 	$(BIN)/python docs/gallery.py
+	$(BIN)/python docs/notebooks.py
 
 # the locks of all environments with the hashes of their packages; versions stay, but for `make lock UPGRADE=--upgrade`
 UPGRADE ?=

@@ -198,13 +198,18 @@ def shrink(file: Path, target: Path) -> None:
     """A picture of modest size."""
     with Image.open(file if file.suffix == ".gif" else file.with_suffix(".png")) as found:
         if file.suffix == ".gif":
-            frames = [frame.copy() for frame in list(ImageSequence.Iterator(found))[::FRAMES]]
+            frames = [frame.copy() for place, frame in enumerate(ImageSequence.Iterator(found)) if place % FRAMES == 0]
             pause = FRAMES * found.info["duration"]
-            frames[0].save(target, save_all=True, append_images=frames[1:], duration=pause, loop=0, optimize=True)
+            frames[0].save(target, save_all=True, append_images=frames[1:], duration=pause, loop=0)
             return
-        size = (WIDTH, round(found.height * WIDTH / found.width))
-        small = found.convert("RGB").resize(size, Image.Resampling.LANCZOS)
-    small.quantize(256, Image.Quantize.MEDIANCUT, kmeans=1).save(target, optimize=True)
+        reduced(found, WIDTH).save(target, optimize=True)
+
+
+def reduced(found: Image.Image, width: int) -> Image.Image:
+    """A picture of a width in pixels, in a palette of its own."""
+    size = (width, round(found.height * width / found.width))
+    small = found.convert("RGB").resize(size, Image.Resampling.LANCZOS)
+    return small.quantize(256, Image.Quantize.MEDIANCUT, kmeans=1)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Hooks of the documentation's build: the validation manual and every table of results come from the cases themselves.
 
-A line ``{{ rows CASE }}`` or ``{{ rows CASE | words }}`` in a page becomes the rows of that case (with those words in
-the quantity). The page ``validation.md`` does not exist as a file: it is the registry, run when the site is built.
+A line ``See `slosh validate CASE`.`` or ``See `slosh validate CASE`, rows on *words*.`` in a page becomes the rows of
+that case (with those words in the quantity). In the source tree it reads as it stands. The page ``validation.md`` does
+not exist as a file: it is the registry, run when the site is built.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ FOREIGN = re.compile(
 )
 """What makes a browser fetch from elsewhere: scripts, images, styles, fonts. A link that a reader follows does not."""
 
-ROWS = re.compile(r"^\{\{ rows ([a-z0-9-]+)(?: \| (.+?))? \}\}$", re.MULTILINE)
+ROWS = re.compile(r"^See `slosh validate ([a-z0-9-]+)`(?:, rows on \*(.+?)\*)?\.$", re.MULTILINE)
 
 INTRODUCTION = """# Verification and validation
 

@@ -15,7 +15,7 @@ COMMANDS = """# Every command
 
 Made by `make pages` from the code itself.
 
-`slosh COMMAND --help` says the same. `[...]` marks what may be left out.
+`--help` after a command says the same. `[...]` marks what may be left out.
 """
 PRESETS = """# Every preset
 

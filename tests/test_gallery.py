@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import typer
+from PIL import Image
 
 from slosh_cli.cli.app import tree
 
@@ -46,6 +47,11 @@ def test_pictures_are_there_and_small() -> None:
     files = sorted((DOCS / "images" / "gallery").iterdir())
     assert sorted(DOCS / picture for picture in PICTURES) == files
     assert sum(file.stat().st_size for file in files) < 2e6
+    replays = [file for file in files if file.suffix == ".gif"]
+    assert replays
+    for file in replays:
+        with Image.open(file) as replay:
+            assert getattr(replay, "n_frames", 1) > 30
 
 
 def test_each_picture_has_a_sentence() -> None:

@@ -60,6 +60,11 @@ def test_a_page_reads_well_as_it_is(page: str) -> None:
         width = cells
 
 
+def test_no_page_has_a_placeholder() -> None:
+    """Also the pages that people write."""
+    assert not [page.name for page in sorted(DOCS.glob("*.md")) if "{{" in CODE.sub("", page.read_text("utf-8"))]
+
+
 def test_the_help_of_every_command_names_a_page() -> None:
     app = typer.main.get_command(tree())
     inner = [one for command in app.commands.values() for one in (command, *getattr(command, "commands", {}).values())]  # type: ignore[attr-defined]

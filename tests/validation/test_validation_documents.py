@@ -78,12 +78,14 @@ def test_the_manual_has_every_case_tolerance_reason_and_sabotage(hooks):
 
 
 def test_rows_of_a_case_take_the_place_of_their_mark(hooks):
-    text = hooks.with_rows("before\n{{ rows polach | quantity }}\nafter", lambda name: made_up(read_case(name)))
+    text = hooks.with_rows(
+        "before\nSee `slosh validate polach`, rows on *quantity*.\nafter", lambda name: made_up(read_case(name))
+    )
     assert "`slosh validate polach`" in text
     assert "some \\| quantity" in text
     assert "a note" not in text
     with pytest.raises(ValueError, match="no row about 'nonsense'"):
-        hooks.with_rows("{{ rows polach | nonsense }}", lambda name: made_up(read_case(name)))
+        hooks.with_rows("See `slosh validate polach`, rows on *nonsense*.", lambda name: made_up(read_case(name)))
 
 
 def test_every_mark_in_the_pages_finds_rows(hooks):
