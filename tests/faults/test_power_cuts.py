@@ -80,7 +80,7 @@ def cuts(disk: Disk, how_many: int) -> Iterator[tuple[bytes, bytes, set[str]]]:
         yield disk.cut(chance)
 
 
-@pytest.mark.parametrize("how_many", [12, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("how_many", [12, pytest.param(400, marks=pytest.mark.slow)])
 def test_after_any_power_cut_the_same_command_ends_with_the_same_table(
     tmp_path: Path, recorded: Disk, paper: Scenario, template: object, monkeypatch: pytest.MonkeyPatch, how_many: int
 ) -> None:
