@@ -8,6 +8,7 @@ thread that waits beside it takes the unfinished files away and ends the process
 import os
 import signal
 import sys
+import time
 
 TYPE_CHECKING: bool = False  # the module typing takes as long to load as all that is needed here
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ class _State:
 
     heard: "Event | None" = None
     raised: "Event | None" = None
+    since = 0.0
     ended = False
     code = _CODE
 
@@ -70,9 +72,13 @@ def _interrupt(number: int, frame: object) -> None:
     note_heard()
     if _State.ended:
         _end_at_once(number, frame)
-    if _State.raised is not None and not _State.raised.is_set():  # a second one would disturb the closing
-        _State.raised.set()
+    if _State.raised is None or not _State.raised.is_set():
+        _State.since = time.monotonic()
+        if _State.raised is not None:
+            _State.raised.set()
         raise KeyboardInterrupt
+    if time.monotonic() - _State.since > _HEARD_WITHIN:  # the same key struck twice would disturb the closing
+        _end_at_once(number, frame)
 
 
 def _end_at_once(_number: int, _frame: object) -> None:
@@ -110,8 +116,6 @@ def _watch(ear: int) -> None:
             _end_at_once(number, None)
         heard.clear()
         if raised.is_set():
-            import time
-
             time.sleep(_DONE_WITHIN)
             _end_at_once(number, None)
 

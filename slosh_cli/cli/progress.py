@@ -108,16 +108,23 @@ class StopsProgress(_Bar):
     def __init__(self, *, noted_every: float = _NOTE_SECONDS) -> None:
         super().__init__("stops", "rate", "left")
         self._every = noted_every
-        self._began = self._noted = time.monotonic()
+        self._began = self._noted = self._moved = time.monotonic()
+        self._done = 0
 
     def __call__(self, done: int, total: int) -> None:
-        """Show that `done` of `total` stops are finished."""
+        """Show that `done` of `total` stops are finished; called again without progress, since when there is none."""
         now = time.monotonic()
+        if done != self._done:
+            self._done, self._moved = done, now
         rate = done / max(now - self._began, 1e-9)
         left = (total - done) / rate if done else None
         if _somebody_watches():
             told = {"rate": f"{rate:.1f}/s", "left": f"{duration(left)} left"} if done else {}
             self._draw(done, total, **told)
+        elif done < total and now - self._moved >= self._every and now - self._noted >= self._every:
+            self._noted = now
+            since = duration(now - self._moved)
+            note(f"{done} of {total} stops, none for {since}: a worker may hang. Ctrl-C keeps what is finished")
         elif done and done < total and now - self._noted >= self._every:
             self._noted = now
             note(f"{done} of {total} stops, {rate:.1f} per second, {duration(left)} left")

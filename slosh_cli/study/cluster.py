@@ -131,7 +131,9 @@ class Cluster:
                 if not self._batches:
                     break
                 future = self._wait()
-                if future is not None:
+                if future is None:
+                    yield []  # whoever waits may say so
+                else:
                     yield from self._received(future)
         finally:
             for future in list(self._batches):

@@ -127,7 +127,7 @@ def run_study(study: Study, plan: Plan, journal: Journal, workers: Workers, *, c
             if batch:
                 journal.add(batch)
                 done += len(batch)
-                report(done, total)
+            report(done, total)
             for outcome in batch:
                 _write_history(outcome, plan)
     return done

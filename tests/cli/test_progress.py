@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from slosh_cli.cli import progress
-from slosh_cli.cli.progress import RunProgress
+from slosh_cli.cli.progress import RunProgress, StopsProgress
 
 
 @dataclass
@@ -53,3 +53,13 @@ def test_without_anybody_watching_there_is_none(world: World, capsys: pytest.Cap
         world.now = 5.0
         bar(0.25, 10.0)
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_study_that_comes_no_further_says_since_when(world: World, capsys: pytest.CaptureFixture[str]) -> None:
+    world.terminal = False
+    with StopsProgress() as bar:
+        for world.now, done in ((0.0, 0), (70.0, 5), (100.0, 5), (140.0, 5), (150.0, 5), (210.0, 6)):
+            bar(done, 10)
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.partition(" stops, ")[2].partition(" ")[0] for line in lines] == ["0.1", "none", "0.0"]
+    assert lines[1] == "5 of 10 stops, none for 70 s: a worker may hang. Ctrl-C keeps what is finished"

@@ -1,8 +1,9 @@
 """The power fails under the journal: what was not flushed to the disk is dropped, sector by sector, at random.
 
 The disk is that of the process, recorded after every commit. What was flushed stays. Of what was written since, any
-sector may hold the old content or the new one. A commit writes the log alone; where it is full, the log is flushed,
-then its pages go to the database, which is flushed in turn.
+sector may hold the old content or the new one. A commit writes the log alone. Where it is full, the log is flushed,
+then its pages go to the database, which is flushed in turn. A log that begins anew has its head flushed before the
+rest: else the frames of an old log, believed up to the first new one, would spoil the database.
 """
 
 import random
@@ -22,6 +23,7 @@ from slosh_cli.study.table import TABLE
 from slosh_cli.study.threads import Threads
 
 _SECTOR = 512
+_HEAD = 32
 _VARY = {"braking.torque": "2:14:1 kN m"}
 
 
@@ -41,8 +43,17 @@ class Disk:
         """The files after a power cut at a random moment, and the keys that must be in them."""
         before, after = chance.choice(list(zip(self.states, self.states[1:], strict=False)))
         if before[0] == after[0] or chance.random() < 0.5:
-            return before[0], mixed(before[1], after[1], chance), before[2]
+            return before[0], mixed_log(before[1], after[1], chance), before[2]
         return mixed(before[0], after[0], chance), after[1], before[2]
+
+
+def mixed_log(old: bytes, new: bytes, chance: random.Random) -> bytes:
+    """As `mixed`, but that the head of a log that begins anew is old, or new before anything else is."""
+    if old[:_HEAD] == new[:_HEAD]:
+        return mixed(old, new, chance)
+    if chance.random() < 0.2:
+        return old
+    return new[:_HEAD] + mixed(old, new, chance)[_HEAD:]
 
 
 def mixed(old: bytes, new: bytes, chance: random.Random) -> bytes:
@@ -80,7 +91,7 @@ def cuts(disk: Disk, how_many: int) -> Iterator[tuple[bytes, bytes, set[str]]]:
         yield disk.cut(chance)
 
 
-@pytest.mark.parametrize("how_many", [12, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("how_many", [12, pytest.param(200, marks=pytest.mark.slow)])
 def test_after_any_power_cut_the_same_command_ends_with_the_same_table(
     tmp_path: Path, recorded: Disk, paper: Scenario, template: object, monkeypatch: pytest.MonkeyPatch, how_many: int
 ) -> None:

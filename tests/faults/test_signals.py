@@ -56,7 +56,22 @@ def packaged(name, output):
         time.sleep(60.0)
 slosh_cli.cli.init._of_packaged = packaged
 """
+TWICE = """
+import threading
+import slosh_cli.cli.init
+def packaged(name, output):
+    try:
+        send()
+        time.sleep(60.0)
+    finally:
+        send()  # at once: struck twice by mistake
+        threading.Timer(1.3, send).start()
+        while True:
+            time.sleep(1.0)
+slosh_cli.cli.init._of_packaged = packaged
+"""
 PLACES = {
+    "a closing that never ends": TWICE,
     "loading": WHILE_LOADING,
     "importing": WHILE_IMPORTING,
     "finaliser": IN_A_FINALISER,
