@@ -83,4 +83,4 @@ def _locks(name: str, run: TrainResult) -> str:
     if not places:
         return f"no wheel locks with the {name}"
     which = f"{'vehicle' if len(places) == 1 else 'vehicles'} {listed(places)}"
-    return f"with the {name} wheels lock in {which} ({run.longest_lock_s:.2f} s at most)"
+    return f"with the {name} wheels lock in {which} ({run.longest_lock_s:.3g} s at most)"

@@ -81,7 +81,7 @@ def _verdict(train: TrainHistory) -> str:
     locks = [float(np.max(one.facts["locked_time_s"])) for one in train.vehicles]
     places = [place for place, time in enumerate(locks, 1) if time > 0.0]
     which = f"{'vehicle' if len(places) == 1 else 'vehicles'} {listed(places)}" if places else ""
-    told.append(f"Wheels lock in {which}, for {max(locks):.2f} s at most." if places else "No wheel locks.")
+    told.append(f"Wheels lock in {which}, for {max(locks):.3g} s at most." if places else "No wheel locks.")
     return " ".join(told)
 
 

@@ -34,8 +34,9 @@ def _forces(trains: Sequence[TrainHistory], names: Sequence[str]) -> Figure:
             look = LOOKS[place] | {"marker": _MARKERS[place], "markersize": 5}
             (line,) = one.plot(np.arange(1, len(forces) + 1), forces, **look)
             one.set_ylabel(f"{way} / kN")
-            one.set_ylim(bottom=0.0)
             drawn[shorten(names[place], 100, placeholder="...")] = line
+    for one in axes:
+        one.set_ylim(bottom=0.0)  # after all lines, for it ends the search for the largest value
     axes[-1].set_xlabel("coupling, from the front")
     axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
     figure.legend(handles=list(drawn.values()), labels=list(drawn), loc="outside lower left", ncols=1)

@@ -13,6 +13,7 @@ from slosh_cli.application.differing import differing_inputs, listed
 from slosh_cli.application.train import simulate_train
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.errors import UsageError
+from slosh_cli.report.compare_train_figures import compare_train_figures
 from slosh_cli.results.hdf5 import read_train, write_history, write_train
 from slosh_cli.scenario import load_scenario
 from slosh_cli.scenario.train_file import load_train
@@ -62,6 +63,15 @@ def test_trains_are_compared_as_files_and_in_memory(slosh: Slosh, train: Path) -
     assert [one.as_dict() for one in differences([first, other])] == told["answers"]
     assert differing_inputs([first, read_train(Path("B.h5"))]) == told["inputs"]
     assert "compression at (coupling with" in slosh("compare", "A.h5", "B.h5", "-o", "out").out
+
+
+def test_every_train_lies_inside_the_picture(train: Path) -> None:
+    runs = [simulate_train(load_train(train, [f"coupling={kind}"])) for kind in ("screw", "automatic")]
+    for draw in compare_train_figures([run.history for run in runs], ["A", "B"]).values():
+        for axes in draw().axes:
+            low, high = axes.get_ylim()
+            assert len(axes.lines) == 2
+            assert all(low <= value <= high for line in axes.lines for value in line.get_ydata())
 
 
 def test_a_wagon_is_not_compared_with_a_train(slosh: Slosh, train: Path) -> None:
