@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference studies clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs reference studies fuzz clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -16,6 +16,7 @@ help:
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
+	@echo "make fuzz      100,000 spoilt inputs, or N=... of them (hours); what fails is kept in outputs/fuzz/"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
@@ -72,6 +73,11 @@ docs: $(DOCS_READY)
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
+
+N ?= 100000
+
+fuzz: $(READY)
+	PYTHONPATH=tests/results $(BIN)/python tests/hostile/campaign.py --inputs $(N) --folder outputs/fuzz
 
 studies: $(READY)
 	$(BIN)/python docs/identifiability.py
