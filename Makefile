@@ -8,7 +8,7 @@ LOCKED := $(PIP) install --require-hashes --only-binary :all:
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock campaign clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock campaign fuzz clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -22,6 +22,7 @@ help:
 	@echo "make pages     the pages of the documentation that are made from the code, after a change of it"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
 	@echo "make lock      the lock files from pyproject.toml (UPGRADE=--upgrade: newer versions too)"
+	@echo "make fuzz      100,000 spoilt inputs, or N=... of them (hours); what fails is kept in outputs/fuzz/"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
 $(READY): pyproject.toml requirements.lock
@@ -102,6 +103,11 @@ lock: $(READY)
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
+
+N ?= 100000
+
+fuzz: $(READY)
+	PYTHONPATH=tests/results $(BIN)/python tests/hostile/campaign.py --inputs $(N) --folder outputs/fuzz
 
 studies: $(READY)
 	$(BIN)/python docs/identifiability.py

@@ -12,7 +12,7 @@ from slosh_cli.results.train_result import CouplingResult, TrainResult, VehicleR
 from slosh_cli.scenario import load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-STUDY = "name: fills\nbase: paper-80-liquid\nvary:\n  tank.fill: 0.3:0.5:0.1\n  contact.adhesion: [dry, wet]\n"
+STUDY = "name: fills\nbase: paper-80-liquid\nvary:\n  braking.onset: 0.5:1:0.1 s\n  contact.adhesion: [dry, wet]\n"
 CHANNELS = ("speed", "brake_application", "surface_front")
 
 
