@@ -107,7 +107,9 @@ def _found(
     found |= {"unevenness_d1_m": realised_level(stop.track.unevenness)} if stop and level else {}
     found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings_of(verdicts)}
     lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet), *default_lines(defaults), *told]
-    return found, [*lines, *([level] if level else []), advice.sentence]
+    in_use = scenario.tank.liquid.model == advice.model
+    suits = ["The model of the liquid that suits is the one in use."] if in_use else []
+    return found, [*lines, *([level] if level else []), *suits, advice.sentence]
 
 
 def _refuse(asked: bool, file: Path, what: str) -> None:
