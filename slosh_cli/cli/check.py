@@ -34,6 +34,7 @@ _SHEET: Final = {
         "filling_time_s": ("filling time", ".1f", "s"),
         "mean_deceleration_m_s2": ("mean deceleration, point mass", ".3f", "m/s^2"),
         "stopping_distance_m": ("distance from the onset, point mass", ".1f", "m"),
+        "braked_weight_percentage": ("lambda of that distance (UIC 544-1)", ".1f", "%"),
     },
     "Periods": {
         "slosh_period_s": ("first slosh period, tank held", ".2f", "s"),

@@ -22,7 +22,7 @@ def compare_command(
     output: Annotated[Path | None, option("--output -o", "DIR", _FOLDER)] = None,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Compare runs: answers, inputs that differ, histories in one picture.
+    """Compare runs: answers, inputs, histories in one picture.
 
     Runs are of single wagons. Changes are against the first run; a run without an answer has a dash. Figures of an
     earlier comparison in the same folder are replaced.
