@@ -43,10 +43,9 @@ test-all: $(READY)
 	$(BIN)/python -m pytest
 
 # a fourth of them are compared with finer, stronger and mirrored runs; CAMPAIGN='--seed wagon:17' repeats one
-N ?= 1000
 TRAINS ?= 50
 campaign: $(READY)
-	nice $(BIN)/python -m tests.campaign --wagons $(N) --trains $(TRAINS) $(CAMPAIGN)
+	nice $(BIN)/python -m tests.campaign --wagons $(or $(N),1000) --trains $(TRAINS) $(CAMPAIGN)
 
 # `make test` never runs the benchmarks: their files are not named test_*
 PARTS ?= contestants floor scaling startup liquids
@@ -104,10 +103,8 @@ lock: $(READY)
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
 
-N ?= 100000
-
 fuzz: $(READY)
-	PYTHONPATH=tests/results $(BIN)/python tests/hostile/campaign.py --inputs $(N) --folder outputs/fuzz
+	PYTHONPATH=tests/results $(BIN)/python tests/hostile/campaign.py --inputs $(or $(N),100000) --folder outputs/fuzz
 
 studies: $(READY)
 	$(BIN)/python docs/identifiability.py

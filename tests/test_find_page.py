@@ -47,3 +47,17 @@ def test_nothing_found_is_exit_code_3_with_both_ends(folder: Path, capsys: pytes
     err = capsys.readouterr().err
     assert "at 2 kN m: braking distance" in err
     assert "at 18 kN m: braking distance" in err
+    assert "try a wider range, such as `--vary 'braking.torque=1:36 kN m'`" in err
+
+
+def test_the_force_of_blocks_is_told_with_its_torque(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two blocks of 20 kN with friction 0.3 at a wheel of 0.46 m brake with 5.52 kN m."""
+    words = ["find", "scenario.yaml", "--until", "braking_distance=10 m", "--points", "5", "--no-figures"]
+    blocks = ["--set", "braking.blocks={count: 2, force: 20 kN, friction: 0.3}"]
+    assert main([*words, *blocks, "--vary", "braking.blocks.force=20:40 kN"]) == 3
+    told = re.search(r"at 20 kN: .*, ([0-9.]+) kN m per wheel at the initial speed", capsys.readouterr().err)
+    assert told is not None
+    radius = load_scenario("scenario.yaml").wagon.wheelset.wheel_radius
+    assert float(told[1]) == pytest.approx(2 * 20 * 0.3 * radius, rel=1e-3)
+    assert main([*words, *blocks, "--vary", "braking.torque"]) == 2
+    assert "its brake is told by `braking.blocks.force`" in capsys.readouterr().err

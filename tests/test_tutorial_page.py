@@ -42,10 +42,13 @@ def _same(told: str, printed: str) -> bool:
 
 def test_the_walk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
     monkeypatch.setattr("slosh_cli.report.figures.RESOLUTION", 20)
     printed = ""
     for kind, text in BLOCKS:
-        if kind == "yaml":
+        if kind == "yaml" and text.startswith("format: 1\nname: ten\n"):
+            (tmp_path / "ten.yaml").write_text(text, encoding="utf-8")
+        elif kind == "yaml":
             put_in(tmp_path / "my_wagon.yaml", text)
         if kind == "sh":
             printed = ""

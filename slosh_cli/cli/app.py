@@ -55,7 +55,7 @@ def _slosh(
 ) -> None:
     """Tank wagons with a sloshing liquid, braking on a real track.
 
-    Start with `slosh init`, look at the scenario it writes, then `slosh run` it.
+    Start with `slosh init --wagon zacns-like --load '60 %'`, look at the scenario it writes, then `slosh run` it.
     """
     if version:
         say(f"slosh {__version__}")

@@ -35,6 +35,7 @@ _SHEET: Final = {
         "filling_time_s": ("filling time", ".1f", "s"),
         "mean_deceleration_m_s2": ("mean deceleration, point mass", ".3f", "m/s^2"),
         "stopping_distance_m": ("distance from the onset, point mass", ".1f", "m"),
+        "braked_weight_percentage": ("lambda of that distance (UIC 544-1)", ".1f", "%"),
     },
     "Periods": {
         "slosh_period_s": ("first slosh period, tank held", ".2f", "s"),
@@ -111,7 +112,9 @@ def _found(
     found |= {"checks": plain_checks(verdicts), "recommendation": advice.as_dict(), "warnings": warnings_of(verdicts)}
     lines = [f"{file}: {scenario.name} is a sound scenario ({kind})", *_lines(sheet)]
     lines += [counted_standings(inputs), *default_lines(defaults), *told]
-    return found, [*lines, *([level] if level else []), advice.sentence]
+    in_use = scenario.tank.liquid.model == advice.model
+    suits = ["The model of the liquid that suits is the one in use."] if in_use else []
+    return found, [*lines, *([level] if level else []), *suits, advice.sentence]
 
 
 def _refuse(asked: bool, file: Path, what: str) -> None:

@@ -24,7 +24,7 @@ def compare_command(
     output: Annotated[Path | None, option("--output -o", "DIR", _FOLDER)] = None,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Compare runs: answers, inputs that differ, histories in one picture.
+    """Compare runs: answers, inputs, histories in one picture.
 
     Runs are all of single wagons or all of trains. Changes are against the first run; a run without an answer has a
     dash. Figures of an earlier comparison in the same folder are replaced.
@@ -62,7 +62,8 @@ def answer_lines(found: Sequence["Difference"]) -> list[str]:
         for place, value in enumerate(one.values):
             text = f"  {chr(65 + place)} {_number(value, one.per):>12} {one.unit if value is not None else ''}".rstrip()
             change, percent = (one.change(place), one.percent(place)) if place else (None, None)
-            text += f"   {change / one.per:+.5g} {one.unit}".rstrip() if change is not None else ""
+            by = "points" if one.unit == "%" else one.unit  # no per cent of the first run, which follow
+            text += f"   {change / one.per:+.5g} {by}".rstrip() if change is not None else ""
             lines.append(text + (f" ({percent:+.3g} %)" if percent is not None else ""))
     return lines
 
@@ -74,5 +75,14 @@ def _number(value: float | None, per: float) -> str:
 def _input_lines(inputs: Mapping[str, Sequence[Any]]) -> list[str]:
     if not inputs:
         return ["the inputs are the same but for name and description"]
-    told = [f"  {key}: {' | '.join('-' if one is None else str(one) for one in some)}" for key, some in inputs.items()]
+    told = [f"  {key}: {' | '.join(map(_as_written, some))}" for key, some in inputs.items()]
     return ["inputs that differ:", *told]
+
+
+def _as_written(value: Any) -> str:
+    """An input as a scenario has it on one line; a dash where a run has none."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key}: {_as_written(one)}' for key, one in value.items())}}}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_as_written, value))}]"
+    return "-" if value is None else str(value)

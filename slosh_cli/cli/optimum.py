@@ -25,7 +25,7 @@ def optimum_command(
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figures.")] = False,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Find the value of a key with the shortest distance, within limits.
+    """Find the best value of a key: the shortest stop within limits.
 
     The range is scanned, then the neighbourhood of the best stop ever more finely. It is told what holds the optimum
     where it is: a limit, a jump, an end of the range.

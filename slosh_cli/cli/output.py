@@ -60,14 +60,20 @@ def default_lines(values: Mapping[str, str]) -> Iterator[str]:
 
 
 def show(*renderables: "RenderableType", whole: bool = False) -> None:
-    """Print tables and other things of rich to stdout; `whole`: rather too wide than cut."""
+    """Print tables and other things of rich to stdout; `whole`: rather too wide than wrapped.
+
+    Columns of numbers, which stand to the right, are never cut nor wrapped: rather the table is too wide.
+    """
     from rich.console import Console
+    from rich.table import Table
 
     console = Console(highlight=False)
     try:
-        if whole:
-            free = console.options.update(max_width=10_000)
-            console.width = max(console.width, *(console.measure(one, options=free).maximum for one in renderables))
+        free = console.options.update(max_width=10_000)
+        for column in (column for one in renderables if isinstance(one, Table) for column in one.columns):
+            column.no_wrap = column.no_wrap or column.justify == "right"
+        sizes = [console.measure(one, options=free) for one in renderables]
+        console.width = max([console.width, *(size.maximum if whole else size.minimum for size in sizes)])
         with console.capture() as capture:
             console.print(*renderables, sep="\n")
     except OSError as error:  # rich looks whether stdout is still there

@@ -90,11 +90,14 @@ def _lines(found: "Searched") -> list[str]:
 def _side(found: "Searched", sample: Any) -> str:
     """``19.6 kN m: braking distance / m 334.33``, with what else there is to know."""
     told = found.side(sample)
-    asked = found.search.asked
+    asked, search_key = found.search.asked, found.search.span.key
     what, unit = asked.label.partition(" / ")[0], "" if asked.unit == "1" else f" {asked.unit}"
     value = "no answer" if told["answer"] is None else f"{what} {told['answer']:.6g}{unit}"
     distance = told["braking_distance_m"]
     more = "" if distance is None or what == "braking distance" else f", braking distance {distance:.2f} m"
+    torque = sample.row.get("torque_kN_m")
+    if torque is not None and search_key.startswith("braking.") and search_key != "braking.torque":
+        more += f", {torque:.4g} kN m per wheel at the initial speed"
     more += "" if told["status"] == "stopped" else f" ({told['status']})"
     return f"{found.search.span.text(sample.x, 7)}: {value}{more}"
 
@@ -120,4 +123,8 @@ def _nothing(found: "Searched") -> str:
         lines = [f"No answer: stops between have none where {words} is passed"]
     elif found.passages:
         lines = [f"No answer: {words} is passed {len(found.passages)} times, not {search.crossing}"]
-    return "\n".join([*lines, *(f"  at {_side(found, one)}" for one in ends)])
+    lines += [f"  at {_side(found, one)}" for one in ends]
+    if found.kind == "none" and not found.passages and search.span.low > 0.0:
+        wider = f"{0.5 * search.span.low:g}:{2.0 * search.span.high:g} {search.span.unit}".rstrip()
+        lines.append(f"It may lie beyond: try a wider range, such as `--vary '{search.span.key}={wider}'`")
+    return "\n".join(lines)

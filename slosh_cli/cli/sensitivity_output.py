@@ -37,7 +37,7 @@ def vary_and_tell(
         say_json({**checked, **more, "warnings": [*checked["warnings"], *keeping.failures]})
     else:
         say("")
-        show(_table(found), whole=True)
+        show(_table(found))
         for line in _small(found):
             say(line)
         say(files_text(files))
@@ -45,27 +45,29 @@ def vary_and_tell(
 
 
 def _table(found: "Sensitivity") -> "Table":
-    """What matters, a row per value: its ends and what the stop comes to there."""
+    """What matters: a row per value, under it what the stop comes to at both its ends."""
     from rich.box import SIMPLE
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table(box=SIMPLE, title="What the stop depends on", title_justify="left")
-    for name in ("key", "standing", "value", "from", "to", "distance / m", "unloading", "first lock / (km/h)", "why"):
-        table.add_column(name)
-    table.add_row("as it is", "", "", "", "", *_answers([found.base]), "")
+    table = Table(box=SIMPLE, title="What the stop depends on", title_justify="left", pad_edge=False)
+    table.add_column("key")
+    for name in ("distance\n/ m", "unloading\n/ %", "first lock\n/ (km/h)"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_row("as it is", *_answers(found.base))
     for one in found.mattering:
         doubt = one.doubt
-        cells = (doubt.key, doubt.standing, doubt.own, doubt.low, doubt.high, *_answers(one.rows), doubt.reason)
-        table.add_row(*map(escape, cells))
+        table.add_row(escape(f"{doubt.key} = {doubt.own} ({doubt.standing}; {doubt.reason})"))
+        for end, row in zip((doubt.low, doubt.high), one.rows, strict=True):
+            table.add_row(escape(f"  {end}"), *_answers(row))
     return table
 
 
-def _answers(rows: Sequence[Mapping[str, Any] | None]) -> tuple[str, str, str]:
-    """Distance, unloading and speed at the first lock at each end."""
+def _answers(row: Mapping[str, Any] | None) -> tuple[str, str, str]:
+    """Distance, unloading and speed at the first lock."""
     from slosh_cli.study.sensitivity import DISTANCE, LOCK, UNLOADING
 
-    def cell(row: Mapping[str, Any] | None, name: str, form: str, factor: float, none: str) -> str:
+    def cell(name: str, form: str, factor: float, none: str) -> str:
         if row is None:
             return "-"
         value = row.get(name)
@@ -73,8 +75,8 @@ def _answers(rows: Sequence[Mapping[str, Any] | None]) -> tuple[str, str, str]:
             return str(row["status"]) if name == DISTANCE else "-"
         return none if value is None else format(value * factor, form)
 
-    asked = ((DISTANCE, ".1f", 1.0, "-"), (UNLOADING, ".3f", 1.0, "-"), (LOCK, ".1f", 3.6, "none"))
-    first, second, third = (" ... ".join(cell(row, *one) for row in rows) for one in asked)
+    asked = ((DISTANCE, ".1f", 1.0, "-"), (UNLOADING, ".1f", 100.0, "-"), (LOCK, ".1f", 3.6, "none"))
+    first, second, third = (cell(*one) for one in asked)
     return first, second, third
 
 
@@ -85,9 +87,8 @@ def _small(found: "Sensitivity") -> list[str]:
     small = [one.doubt for one in found.effects if not one.matters(found.base) and not one.refusal]
     lines = []
     if small:
-        limits = (
-            f"{SMALL[DISTANCE]:.1%} of the distance, {SMALL[UNLOADING]:g} of unloading or {SMALL[LOCK] * 3.6:.1f} km/h"
-        )
+        part, loads, speed = SMALL[DISTANCE] * 100.0, SMALL[UNLOADING] * 100.0, SMALL[LOCK] * 3.6
+        limits = f"{part:g} % of the distance, {loads:g} % of unloading or {speed:.1f} km/h"
         lines.append(f"These do not matter here, each alone changes less than {limits} at the first lock:")
         lines += [f"  {one.key}: {one.own}, from {one.low} to {one.high} ({one.standing})" for one in small]
     lines += [

@@ -13,7 +13,7 @@ from slosh_cli.errors import UsageError, ValueRefused
 if TYPE_CHECKING:
     from slosh_cli.application.excitation import ExcitationResult
 
-_HELP: Final = """The tank alone: slosh modes, forces under a deceleration, charts.
+_HELP: Final = """The tank alone: modes, forces under a deceleration, charts.
 
 Takes the scenario of a stop or of a tank alone.
 """
@@ -47,7 +47,7 @@ def _coefficients(
     output: Annotated[Path | None, option("--output -o", "DIR", _PICTURES)] = None,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Slosh modes from the tank's geometry, beside the scenario's own."""
+    """Slosh modes of the geometry, beside the scenario's own."""
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.tank import COEFFICIENTS_TABLE, coefficients
     from slosh_cli.cli.keeping import files_text, told
@@ -87,7 +87,7 @@ def _excite(
     output: OutputFolder = None,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Decelerate the tank alone: force, moment and surface over time.
+    """Decelerate the tank: force, moment, surface over time.
 
     The tank does not pitch; the liquid model is the scenario's. Writes excite.csv, excite.h5 and a figure.
     """
@@ -144,7 +144,7 @@ def _chart(
     output: OutputFolder = None,
     as_json: AsJson = False,
 ) -> ExitCode:
-    """Frequency, mass fraction and height of the modes against filling."""
+    """Frequency, mass and height of modes against filling."""
     from slosh_cli.application.keeping import Keeping
     from slosh_cli.application.tank import chart_fills, chart_folder
     from slosh_cli.cli.keeping import files_text, told

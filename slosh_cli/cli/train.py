@@ -136,7 +136,7 @@ def _rows(result: "TrainResult") -> "Table":
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     table.add_column("")
-    table.add_column("vehicle", overflow="ellipsis", no_wrap=True)
+    table.add_column("vehicle", overflow="fold")
     heads = ("onset\n/ s", "way\n/ m", "rise\n/ m", "unloading\n/ %", "locked\n/ s")
     for column in (*heads, "compression\nbehind / kN", "tension\nbehind / kN"):
         table.add_column(column, justify="right", no_wrap=True)

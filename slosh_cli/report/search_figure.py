@@ -44,6 +44,8 @@ def search_figure(found: Any) -> Figure:
     span = search.span
     axes.set_xlabel(f"{span.key} / {span.unit}" if span.unit else span.key)
     axes.set_ylabel(search.asked.label)
+    if not any(one.value for one in answered):
+        axes.set_ylim(-0.05, 1.0)  # nothing but zeros: a scale of its own would seem to show digits of them
     limits = ", ".join(one.words for one in search.limits)
     axes.set_title(
         "\n".join([span.base.name, *([f"within {limits}"] if limits else [])]), loc="left", fontsize=13, color=INK,

@@ -15,7 +15,7 @@ _FEWEST: Final = 5
 _LOW, _HIGH = "#6baed6", "#08306b"
 _PANELS: Final = (
     (DISTANCE, "braking distance / m", 1.0),
-    (UNLOADING, "largest unloading", 1.0),
+    (UNLOADING, "largest unloading / %", 100.0),
     (LOCK, "speed at first lock / (km/h)", 3.6),
 )
 

@@ -62,9 +62,9 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 
 
 def _columns(panel: Panel) -> int:
-    """Columns of the legend: as many as the longest label leaves room for."""
+    """Columns of the legend: as many as the longest label leaves room for beside its line."""
     longest = max(len(one.label) for one in panel.curves)
-    return max(1, min(len(panel.curves), 76 // (longest + 6)))
+    return max(1, min(len(panel.curves), 66 // (longest + 9)))
 
 
 def _draw_curve(axes: Axes, one: Curve, lines: Any, marks: Any, exact: Any) -> None:

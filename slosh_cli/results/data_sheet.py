@@ -11,6 +11,7 @@ from slosh_cli.arrays import Vector
 from slosh_cli.results.filling import degree_of_filling
 from slosh_cli.results.point_stop import mean_tau, point_stop, tau_at
 from slosh_cli.scenario import Scenario, Tank, TankScenario
+from slosh_cli.scenario.schema_brake import braked_percentage
 from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import liquid_depth, section_of
 from slosh_cli.tank.coefficients import SloshMode, given_modes
@@ -73,7 +74,8 @@ def _mass_sheet(scenario: Scenario) -> Sheet:
 
 
 def _brake_sheet(scenario: Scenario) -> Sheet:
-    stop = point_stop(scenario)
+    stop, level = point_stop(scenario), not any(slope for _, slope in scenario.track.gradient_points)
+    percentage = braked_percentage(scenario.braking.initial_speed, stop.distance) if stop and level else None
     return {
         "tau": mean_tau(scenario),
         "tau_initial": tau_at(scenario, scenario.braking.initial_speed),
@@ -81,7 +83,7 @@ def _brake_sheet(scenario: Scenario) -> Sheet:
         "filling_time_s": scenario.braking.filling_time,
         "mean_deceleration_m_s2": stop.deceleration if stop else None,
         "stopping_distance_m": stop.distance if stop else None,
-    }
+    } | ({"braked_weight_percentage": percentage} if percentage else {})
 
 
 def _slosh_sheet(scenario: Scenario | TankScenario) -> Sheet:

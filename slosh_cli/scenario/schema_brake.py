@@ -28,6 +28,19 @@ _BRAKED_DISTANCES: Final = {
     160.0: (161280.0, 19.0),
 }
 """C and D of `S = C/(lambda + D)`, m and per cent, by speed in km/h: UIC 544-1, EN 16834, single vehicle."""
+_PERCENTAGES: Final = Range(10.0, 300.0)
+
+
+def braked_percentage(speed: float, distance: float) -> float | None:
+    """The braked weight percentage whose distance from `speed` (m/s) is `distance` (m), `C/S - D`.
+
+    None where no such percentage is defined: at another speed, or beyond those that a wagon can have.
+    """
+    for known, (constant, added) in _BRAKED_DISTANCES.items():
+        if abs(KM_H * speed - known) < 1e-6:
+            found = constant / distance - added
+            return found if found in _PERCENTAGES else None
+    return None
 
 
 def _known_speed(v: Values) -> Iterator[Finding]:
@@ -41,7 +54,7 @@ class _BrakedWeight(Part):
 
     rules = (_known_speed,)
 
-    percentage: Annotated[float, Number(Range(10.0, 300.0), "65")] = Field(
+    percentage: Annotated[float, Number(_PERCENTAGES, "65")] = Field(
         description="Braked weight over the wagon's mass, per cent."
     )
     speed: Annotated[float, Quantity("speed", Range(25.0, 50.0), "100 km/h")] = Field(

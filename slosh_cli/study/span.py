@@ -17,6 +17,10 @@ from slosh_cli.study.plan import Study
 _FEWEST: Final = 5
 _MOST: Final = 1000
 _SHOWN_IN: Final = {"m/s": ("km/h", 3.6), "N m": ("kN m", 1e-3), "N": ("kN", 1e-3)}
+_BRAKES: Final = (
+    "braking.torque", "braking.blocks.force", "braking.discs.force", "braking.deceleration",
+    "braking.braked_weight.percentage",
+)  # fmt: skip
 _CLOSER: Final = (1.0, 0.9, 0.75, 0.5, 0.25)
 """Parts of the way to an end of a range that nobody gave, where no sound scenario has the end itself."""
 
@@ -96,7 +100,7 @@ def _around(key: str, empty: Study) -> Span:
     option = f"--vary {key}"
     if own is None or own[0] == 0.0:
         said = "0" if own else "nothing that is a number"
-        fix = f"write `--vary {key}=LOW:HIGH` with the unit of that key"
+        fix = f"{_brake_of(key, empty)}write `--vary {key}=LOW:HIGH` with the unit of that key"
         raise _refused(option, f"must have a range where {empty.file} itself has {said} there", key, fix)
     braking = "braking" in key.split(".")
     unit, factor = _SHOWN_IN.get(own[1], (own[1], 1.0)) if braking else (own[1], 1.0)
@@ -106,6 +110,14 @@ def _around(key: str, empty: Study) -> Span:
     low, high = sorted(ends)
     words = f"{f'{low:g} to {high:g} {unit}'.rstrip()}, around the file's own {whole.text(value, 6)}"
     return Span(key, low, high, unit, words, empty)
+
+
+def _brake_of(key: str, empty: Study) -> str:
+    """What the brake of a wagon is told by, where another key of it was asked for; else nothing."""
+    if not key.startswith("braking."):
+        return ""
+    known = [one for one in _BRAKES if own_measure(empty.base, one) is not None]
+    return f"its brake is told by `{known[0]}`, so write `--vary {known[0]}`, or for another brake " if known else ""
 
 
 def _sound_end(whole: Span, own: float, end: float) -> float:

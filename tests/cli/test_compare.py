@@ -10,7 +10,8 @@ from plausible import plausible_run, unfinished_run
 from stand_ins import PAPER, Slosh, Solver
 
 from slosh_cli.application.comparison import differences, liquid_words
-from slosh_cli.application.differing import differing_inputs
+from slosh_cli.application.differing import Difference, differing_inputs
+from slosh_cli.cli.compare import answer_lines
 from slosh_cli.cli.exit_codes import ExitCode
 from slosh_cli.results.hdf5 import write_history
 from slosh_cli.scenario import load_scenario
@@ -42,6 +43,20 @@ def test_answers_and_inputs_that_differ_are_told(slosh: Slosh, runs: tuple[Path,
         "compare_speed", "compare_wheel_loads", "compare_slosh", "compare_brake",
     }  # fmt: skip
     assert all(Path(file).stat().st_size > 1000 for file in told["figures"])
+
+
+def test_points_are_no_per_cent_and_inputs_stand_as_written(slosh: Slosh, tmp_path: Path) -> None:
+    """Unloadings of 20 % and 25 % are 5 points apart, and 25 per cent."""
+    (line, other) = answer_lines([Difference("max_wheel_unloading", "largest", "%", 0.01, (0.2, 0.25))])[1:]
+    assert line == "  A           20 %"
+    assert other == "  B           25 %   +5 points (+25 %)"
+    first = plausible_run(load_scenario(PAPER))
+    baffles = [{"position": "5 m", "opening": 0.2}]
+    walled = first.scenario.with_({"tank.liquid.model": "shallow-water", "tank.baffles": baffles})
+    files = tmp_path / "A.h5", tmp_path / "B.h5"
+    for run, file in zip((first, replace(first, scenario=walled)), files, strict=True):
+        write_history(run, file)
+    assert "[] | [{position: 5.0 m, opening: 0.2}]" in slosh("compare", *files, "-o", "out").out
 
 
 def test_no_number_is_cut_on_a_narrow_terminal(

@@ -234,3 +234,11 @@ def test_presets_are_listed_and_printed_with_their_sources(slosh: Slosh) -> None
     assert json.loads(slosh("presets", "diesel", "--json").out)["un"] == 1202
     refused = slosh("presets", "dieesl")
     assert (refused.code, "did you mean `diesel`?" in refused.err) == (2, True)
+
+
+@pytest.mark.parametrize("group", [(), ("tank",)])
+def test_help_cuts_no_line_of_a_command(group: tuple[str, ...], slosh: Slosh, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a command does fits beside its name on 80 columns."""
+    monkeypatch.setenv("COLUMNS", "80")
+    listed = slosh(*group, "--help").out.partition("Commands:\n")[2]
+    assert not re.findall(r".*\.\.\.$", listed, re.MULTILINE)

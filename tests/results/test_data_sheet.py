@@ -86,6 +86,17 @@ def test_the_point_mass_stops_as_the_wagon_does(stop):
     assert data_sheet(run.scenario)["stopping_distance_m"] == pytest.approx(run.braking_distance_m, rel=1e-3)
 
 
+@pytest.mark.parametrize(("speed", "told"), [(100, 80.0), (120, 65.0), (160, 150.0), (80, None)])
+def test_the_braked_weight_that_a_distance_stands_for(shipped, speed, told):
+    """A brake told by its braked weight, built up as that is defined, has it again; at 80 km/h there is none."""
+    built_up = "braking.application={form: table, points: [[0 s, 0], [0.2 s, 0], [4.2 s, 1]]}"
+    signed = f"braking.braked_weight={{percentage: {told or 80}, speed: {speed if told else 100} km/h}}"
+    start = f"braking.initial_speed={speed} km/h"
+    wagon = shipped("paper_80_solid", signed, built_up, start, *TO_REST[1:])
+    assert data_sheet(wagon).get("braked_weight_percentage") == (told and pytest.approx(told, rel=1e-4))
+    assert "braked_weight_percentage" not in data_sheet(wagon.with_({"track.gradient": 0.01}))
+
+
 def test_what_never_stops_has_no_distance(shipped):
     sheet = data_sheet(shipped("paper_80_solid", "braking.torque=1 N m", "track.gradient=-0.03"))
     assert sheet["stopping_distance_m"] is sheet["mean_deceleration_m_s2"] is None
