@@ -8,7 +8,7 @@ LOCKED := $(PIP) install --require-hashes --only-binary :all:
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs lock reference studies clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs lock everywhere reference studies clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -19,6 +19,7 @@ help:
 	@echo "make lint      ruff, make types: mypy, make format: ruff format"
 	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
+	@echo "make everywhere the same stops with oldest and newest dependencies on every Python found (half an hour)"
 	@echo "make lock      the lock files from pyproject.toml (UPGRADE=--upgrade: newer versions too)"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
 
@@ -85,6 +86,9 @@ lock: $(READY)
 	$(COMPILE) --python-version 3.11.5 --extra docs -c requirements.lock -o .ci/docs.lock
 	$(COMPILE) --python-version 3.11 --extra validation -c requirements.lock -o .ci/validation.lock
 	$(COMPILE) --python-version 3.11 --resolution lowest-direct -o .ci/oldest.lock
+
+everywhere: $(READY)
+	$(BIN)/python -m tests.everywhere environments
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
