@@ -8,7 +8,7 @@ LOCKED := $(PIP) install --require-hashes --only-binary :all:
 READY := $(VENV)/.installed
 DOCS_READY := $(VENV)/.installed-docs
 
-.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock campaign fuzz clean
+.PHONY: help run test test-all bench bench-batch bench-docs lint types format docs pages reference studies lock campaign fuzz everywhere clean
 
 help:
 	@echo "make run       one stop of the paper's wagon, results in outputs/paper-80-liquid/"
@@ -21,6 +21,7 @@ help:
 	@echo "make docs      the manuals as a web site in outputs/docs/"
 	@echo "make pages     the pages of the documentation that are made from the code, after a change of it"
 	@echo "make studies   the studies of the documentation again (some forty minutes)"
+	@echo "make everywhere the same stops with oldest and newest dependencies on every Python found (half an hour)"
 	@echo "make lock      the lock files from pyproject.toml (UPGRADE=--upgrade: newer versions too)"
 	@echo "make fuzz      100,000 spoilt inputs, or N=... of them (hours); what fails is kept in outputs/fuzz/"
 	@echo "make reference recompute the oracle numbers in tests/data with the plain implementation"
@@ -99,6 +100,9 @@ lock: $(READY)
 	$(COMPILE) --python-version 3.11.5 --extra docs -c requirements.lock -o .ci/docs.lock
 	$(COMPILE) --python-version 3.11 --extra validation -c requirements.lock -o .ci/validation.lock
 	$(COMPILE) --python-version 3.11 --resolution lowest-direct -o .ci/oldest.lock
+
+everywhere: $(READY)
+	$(BIN)/python -m tests.everywhere environments
 
 reference: $(READY)
 	$(BIN)/python -m tests.reference_code
