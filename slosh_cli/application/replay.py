@@ -63,7 +63,7 @@ def surface_words(history: History, profile: SurfaceProfile | None) -> str:
     if not history.has_liquid:
         return "The load is frozen: its surface stays flat."
     if history.liquid_model == "shallow-water":
-        return "The surface is that of the shallow-water liquid's cells, cut off at the tank's roof."
+        return "The surface is that of the cells of the shallow-water liquid, cut off at the tank's roof."
     assumed = " Their shapes along the tank are assumed: cosines." if profile.standing == "assumed" else ""
     return f"The surface is that of the slosh modes, cut off at the tank's bottom and roof.{assumed}"
 

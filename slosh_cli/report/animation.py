@@ -44,8 +44,8 @@ def write_tank_animation(title: str, data: Mapping[str, Any], target: Path) -> N
     """Write the replay of a tank alone: its section along with the surface, the force on it below. As
     `write_animation`."""
     with styled():
-        figure = Figure(figsize=(8.0, 4.4), dpi=80)
-        above = figure.add_axes((0.09, 0.42, 0.89, 0.47))
+        figure = Figure(figsize=(8.0, 4.0), dpi=80)
+        above = figure.add_axes((0.09, 0.44, 0.89, 0.42))
         below = figure.add_axes((0.09, 0.12, 0.89, 0.24))
     course, times = data["course"], data["time"]
     force = course["liquid_force"] / 1e3
@@ -81,7 +81,8 @@ def _film(figure: Figure, title: str, times: Vector, draw: Callable[[int], str],
         with writer.saving(figure, str(drawn), 80):
             for row in rows:
                 told = draw(int(row))
-                figure.suptitle(f"{shown}: {times[row]:5.2f} s, {told}{hurry}", x=0.02, ha="left", fontsize=11)
+                words = f"{shown}\n{times[row]:5.2f} s, {told}{hurry}"
+                figure.suptitle(words, x=0.02, y=0.99, ha="left", va="top", fontsize=10)
                 writer.grab_frame()
         with replacing(target) as temporary:
             temporary.write_bytes(drawn.read_bytes())
@@ -126,6 +127,8 @@ def _draw_tank(axes: Axes, tank: Mapping[str, Any], place: Vector, rise: Vector)
     axes.fill_between(half - place, 0.0, level, color=_LIQUID, linewidth=0.0)
     _draw_walls(axes, half, 0.0, tank)
     axes.set(xlim=(-1.02 * half, 1.02 * half), ylim=(-0.03 * height, 1.05 * height), ylabel="height / m")
+    axes.set(aspect="equal", anchor="S")
+    axes.grid(visible=False)
     axes.tick_params(labelbottom=False, bottom=False)
     axes.text(0.99, 0.93, "front", transform=axes.transAxes, ha="right", va="top", fontsize=8, color=MUTED)
 

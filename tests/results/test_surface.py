@@ -120,13 +120,16 @@ def test_the_surface_is_a_small_part_of_the_file(run: Result, written: Path) -> 
 
 
 def test_instants_are_thinned_evenly_and_the_end_stays() -> None:
-    fine = stop("output.interval=1 ms", "solver.time_limit=4.2 s")
+    fine = stop("output.interval=1 ms", "solver.time_limit=4.198 s")
     found = surface_profile(fine.scenario, fine.time, fine.channels, fine.wetted)
     assert found is not None
     assert fine.time.size > 4000
     assert np.diff(found.time)[:-1] == pytest.approx(4e-3)
     assert found.time[-1] == fine.time[-1]
     assert 1000 < found.time.size < 2000
+    front = fine.channels["surface_front"][np.searchsorted(fine.time, found.time)]
+    assert found.rise[:, 1] == pytest.approx(front, abs=2e-3)
+    assert abs(front[-1]) > 0.01
 
 
 def test_a_still_liquid_stays_level() -> None:
