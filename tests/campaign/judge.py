@@ -261,13 +261,16 @@ def _compare_ledger(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float
 
 def _compare_finer(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float) -> None:
     finer = _distance(_run(_at(scenario, FINER * tolerance)).result)
+    single = isinstance(ran.result, Result)
+    protected = single and bool(ran.result.slide_protection_cycles)
     flowing = any(isinstance(stop.vehicle.liquid, CellLiquid) for stop in ran.stops)
-    lifted = f"{', cells' if flowing else ''}{', lifted' if _lifted(ran) else ''}"
+    apart = {"cells": flowing, "lifted": _lifted(ran), "slide protection at work": protected}
+    sort = "".join(f", {name}" for name, is_so in apart.items() if is_so)
     # a distance is told where the stop speed is passed, not nearer than a hundredth of a millimetre
     miss = max(abs(_distance(ran.result) - finer) - 1e-5, 0.0) / finer
     verdict.traits["miss"] = miss
     verdict.hold(
-        f"distance of a finer run{lifted}", miss, tolerance, f"{finer:.6g} m, locked {verdict.traits['locked']:.3g} s"
+        f"distance of a finer run{sort}", miss, tolerance, f"{finer:.6g} m, locked {verdict.traits['locked']:.3g} s"
     )
 
 
@@ -284,8 +287,12 @@ def _stronger(scenario: Scenario, ran: _Ran) -> Iterator[tuple[str, Mapping[str,
     """A brake 5 % stronger, a resistance 20 % larger: of a load that does not move, and below saturation."""
     if scenario.tank.liquid.model != "rigid" or max(ran.result.locked_time_s) > 0.0 or _lifted(ran):
         return
-    if scenario.braking.slide_protection is None and _creepage(ran.result) < 0.05:
+    if scenario.braking.slide_protection is not None:
+        return  # what it lets go follows samples, not the force
+    if _creepage(ran.result) < 0.05:
         yield "no longer with a stronger brake", _stronger_brake(scenario)
+    if scenario.braking.braked_weight is not None:
+        return  # which tells the distance with the resistance: the more of it, the weaker the brake
     resistance = scenario.wagon.running_resistance
     yield "no longer with more resistance", {"wagon.running_resistance.constant": 1.2 * resistance.constant + 100.0}
 
