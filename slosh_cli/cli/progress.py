@@ -19,7 +19,7 @@ _COMPILE_SECONDS: Final = 40
 """What compiling the time loop for a kind of liquid takes on an ordinary machine, in s."""
 
 _NOTE_SECONDS: Final = 60.0
-"""How often a study without a terminal says how far it is, s."""
+"""How often a study or a run without a terminal says how far it is, s."""
 
 
 def announce_solver(models: Iterable[str]) -> None:
@@ -88,18 +88,32 @@ class _Bar:
 
 
 class RunProgress(_Bar):
-    """A progress bar for a run that takes longer than two seconds; silent when stderr is no terminal.
+    """A bar for a run that takes longer than two seconds; a line a minute when stderr is no terminal.
 
-    Call it with the fraction done (0 to 1) and the train's speed in m/s.
+    After a minute the `reason`, why such a run may take long, is told once. Call it with the fraction done (0 to 1)
+    and the train's speed in m/s.
     """
 
-    def __init__(self, description: str) -> None:
+    def __init__(self, description: str, reason: str = "") -> None:
         super().__init__(description, "speed", counted=False)
-        self._started = time.monotonic()
+        self._reason = reason
+        self._started = self._noted = time.monotonic()
 
     def __call__(self, fraction: float, speed: float) -> None:
-        if self._bar is not None or (time.monotonic() - self._started >= _PATIENCE and _somebody_watches()):
-            self._draw(min(max(fraction, 0.0), 1.0), 1.0, speed=f"{speed * 3.6:5.1f} km/h")
+        now, part = time.monotonic(), min(max(fraction, 0.0), 1.0)
+        if self._bar is not None or (now - self._started >= _PATIENCE and _somebody_watches()):
+            self._draw(part, 1.0, speed=f"{speed * 3.6:5.1f} km/h")
+        if now - self._noted >= _NOTE_SECONDS:
+            self._note(now, part, speed)
+
+    def _note(self, now: float, part: float, speed: float) -> None:
+        """Say how far the run is where there is no bar, and why it takes long."""
+        self._noted = now
+        told = [] if self._bar else [f"{part:.0%} after {duration(now - self._started)}, {speed * 3.6:.1f} km/h"]
+        told += [self._reason] if self._reason else []
+        self._reason = ""
+        if told:
+            note(f"{self._description}: {'; '.join(told)}")
 
 
 class StopsProgress(_Bar):

@@ -100,10 +100,11 @@ def _simulate(scenario: "Scenario") -> "Result":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
     from slosh_cli.application.stop import simulate
     from slosh_cli.cli.progress import RunProgress, announce_solver
+    from slosh_cli.results.effort import why_long
 
     announce_solver([scenario.tank.liquid.model])
     cancel = threading.Event()
-    with RunProgress(scenario.name) as progress:
+    with RunProgress(scenario.name, why_long([scenario])) as progress:
         try:
             return simulate(scenario, progress=progress, cancel=cancel)
         except KeyboardInterrupt:

@@ -89,11 +89,12 @@ def _kinds(kinds: "Sequence[VehicleKind]") -> "Table":
 def solve_train(train: "TrainScenario") -> "TrainResult":
     """Run the solver with a progress bar; an interrupt stops the solver before it goes on to the user."""
     from slosh_cli.cli.progress import RunProgress, announce_solver
+    from slosh_cli.results.effort import why_long
     from slosh_cli.results.simulate import simulate_train
 
     announce_solver(train.liquids)
     cancel = threading.Event()
-    with RunProgress(train.name) as progress:
+    with RunProgress(train.name, why_long(train.vehicles)) as progress:
         try:
             return simulate_train(train, progress=progress, cancel=cancel)
         except KeyboardInterrupt:

@@ -10,7 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from slosh_cli.arrays import Cube
+from slosh_cli.errors import PhysicsError
 from slosh_cli.method import START
+from slosh_cli.scenario.units import at_least
 from slosh_cli.solver import advance as loop
 from slosh_cli.solver.booking import record
 from slosh_cli.solver.record import columns_of
@@ -30,6 +32,10 @@ _NODES_PER_CELL = 8
 """Rail nodes that take the time of a cell of the liquid, more or less."""
 _MOST_ROWS = 1 << 14
 """Rows of the record in one piece; memory of some 10 MiB is used again by the next stop, 40 would be new each time."""
+_PIECE = 1 << 26
+"""Bytes of every further piece: so large that the system has them back as soon as they are let go (glibc: 32 MiB)."""
+_LARGEST_RECORD = 1 << 32
+"""Bytes of a record: a wagon alone stays below with as many rows as a scenario may have."""
 RINGING = loop.NOT_FINITE + 1
 """Outcome of a stop whose wheels landed on a track that did not take what they put into it."""
 _SWALLOWED = 0.5
@@ -68,8 +74,9 @@ def integrate(problem: ReadyStop, progress: Progress | None = None, cancel: Canc
     while outcome in (loop.RUNNING, loop.ROWS_FULL):
         outcome = loop.advance(train, buffer, steps)
         if outcome == loop.ROWS_FULL:
-            filled.append(buffer[: train.rows].copy())
-            train.rows = 0
+            filled.append(buffer[: train.rows])
+            _check_size(train, filled)
+            buffer, train.rows = _buffer(train, _PIECE), 0
         if cancel is not None and cancel.is_set():
             raise Cancelled
         if progress is not None:
@@ -78,8 +85,34 @@ def integrate(problem: ReadyStop, progress: Progress | None = None, cancel: Canc
     _record_end(train, buffer)
     if outcome == loop.STOPPED and _is_ringing(problem):
         outcome = RINGING
-    rows = buffer[: train.rows]
-    return Run(np.concatenate([*filled, rows]) if filled else rows, train, outcome, seconds)
+    filled.append(buffer[: train.rows])
+    return Run(_joined(filled), train, outcome, seconds)
+
+
+def _check_size(train: Train, filled: list[Cube]) -> None:
+    """Refuse a record that memory may not hold, as soon as it is too large, with the interval that would do."""
+    size = sum(piece.nbytes for piece in filled)
+    if size > _LARGEST_RECORD:
+        enough = 1.2 * train.control.interval * size / (_LARGEST_RECORD * _fraction(train))
+        raise PhysicsError(
+            f"The history of {len(train.vehicles)} vehicle{'s' if len(train.vehicles) > 1 else ''} must stay below "
+            f"{_LARGEST_RECORD >> 30} GiB of memory, but is larger after {train.time:.4g} s of the run, at rows "
+            f"{train.control.interval:g} s apart. Write `output.interval: {at_least(enough)} s` or more.",
+            "output.interval",
+        )
+
+
+def _joined(pieces: list[Cube]) -> Cube:
+    """The pieces of a record as one; each is let go as it is taken over, so that memory holds the record once."""
+    if len(pieces) == 1:
+        return pieces[0]
+    end = sum(len(piece) for piece in pieces)
+    found = np.empty((end, *pieces[0].shape[1:]))
+    while pieces:
+        piece = pieces.pop()
+        found[end - len(piece) : end] = piece
+        end -= len(piece)
+    return found
 
 
 def _work_per_step(train: Train) -> int:
@@ -89,14 +122,14 @@ def _work_per_step(train: Train) -> int:
     return sum(vehicle.rail.nodes for vehicle in train.vehicles) + _NODES_PER_CELL * cells
 
 
-def _buffer(train: Train) -> Cube:
+def _buffer(train: Train, most_bytes: int = 0) -> Cube:
     """Rows to make room for at once: all up to the time limit, or many steps' worth; empty pages cost nothing."""
     control = train.control
     per_step = int(control.longest_step / control.interval) + 3
-    rows = max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, _MOST_ROWS))
     widest = max(columns_of(vehicle).end for vehicle in train.vehicles)
-    coupled = COUPLING_COLUMNS if train.couplings.origin.size else 0
-    return np.empty((rows, len(train.vehicles), widest + coupled))
+    row = (len(train.vehicles), widest + (COUPLING_COLUMNS if train.couplings.origin.size else 0))
+    most = most_bytes // (8 * row[0] * row[1]) or _MOST_ROWS
+    return np.empty((max(2 * per_step, min(int(control.time_limit / control.interval) + per_step, most)), *row))
 
 
 def _record_end(train: Train, buffer: Cube) -> None:

@@ -43,7 +43,9 @@ MIRRORED = 1e-6
 PATIENCE = 60.0
 """Seconds of processor time that a run may take in silence."""
 LONGEST = 240.0
-"""Seconds of processor time after which a run is given up; of runs for comparison, which are not judged themselves."""
+"""Seconds of processor time after which a run is given up."""
+LONGEST_OTHER = 20.0
+"""The same of runs for comparison, which are not judged themselves."""
 UNSOLVED = ("no step", "lock and release", "became infinite")
 """What the reasons of runs say that came to no end: nobody's wagon is to blame for it."""
 
@@ -82,7 +84,8 @@ class Verdict:
 class _Watch:
     """Progress and cancel of a run in one: how long it was silent, and when to give it up."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest: float) -> None:
+        self.longest = longest
         self.begun = self.heard = time.process_time()
         self.silence = 0.0
 
@@ -91,7 +94,7 @@ class _Watch:
         self.silence, self.heard = max(self.silence, now - self.heard), now
 
     def is_set(self) -> bool:
-        return time.process_time() - self.begun > LONGEST
+        return time.process_time() - self.begun > self.longest
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,7 @@ class _Ran:
     """Mass of each vehicle's moving liquid at the start, kg; zero where it is not in cells."""
 
 
-def _run(scenario: Any) -> _Ran:
+def _run(scenario: Any, longest: float = LONGEST_OTHER) -> _Ran:
     """Simulate a wagon or a train, watched."""
     alone = isinstance(scenario, Scenario)
     name, run = ("problem", simulation.simulate) if alone else ("train_problem", simulation.simulate_train)
@@ -118,7 +121,7 @@ def _run(scenario: Any) -> _Ran:
         return found
 
     with patch.object(simulation, name, building):
-        watch = _Watch()
+        watch = _Watch(longest)
         result = run(scenario, progress=watch, cancel=watch)
     return _Ran(result, tuple(made), watch, masses)
 
@@ -145,15 +148,18 @@ def _judged(seed: int, make: Callable[[], Any], thorough: bool) -> Verdict:
     verdict, begun = Verdict(seed), time.process_time()
     try:
         scenario = make()
-        ran = _run(scenario)
+        ran = _run(scenario, LONGEST)
         _judge_run(verdict, ran)
         if thorough:
             _compare(verdict, scenario, ran)
     except SloshError as refused:
         verdict.outcome = verdict.outcome or f"refused: {str(refused).splitlines()[-1][:90]}"
     except Cancelled:
-        verdict.outcome = verdict.outcome or "given up"
-        verdict.violations.append(Violation("takes too long", time.process_time() - begun, LONGEST))
+        if verdict.outcome:
+            verdict.looked_at.append("a run for comparison was given up")
+        else:
+            verdict.outcome = "given up"
+            verdict.violations.append(Violation("takes too long", time.process_time() - begun, LONGEST))
     except Exception as error:
         verdict.outcome = "exception"
         verdict.violations.append(Violation("exception", 1.0, 0.0, repr(error)[:200]))
@@ -216,7 +222,9 @@ def _judge_wheels(verdict: Verdict, result: Any, one: Any, stop: ReadyStop) -> N
     verdict.hold("wheel backwards", float((floor - rolling).max()), 1e-6 if isinstance(result, TrainResult) else 0.0)
     verdict.hold("tension at the rail", float(-loads.min()), 0.0)
     if braked.any() and isinstance(result, Result):
-        ahead = rolling[:, braked] - speed[braked] * (1.0 + FASTER_THAN_TRAIN)
+        creep = np.array([channels[f"wheel_{i}_tangential_force"] for i in range(1, 5)])[:, braked]
+        # without a brake that presses, resistance slows the wagon, and the rail its wheels, which then run ahead
+        ahead = np.where(creep > 0.0, rolling[:, braked] - speed[braked] * (1.0 + FASTER_THAN_TRAIN), 0.0)
         verdict.hold("wheel ahead of its wagon", float(ahead.max()), 1e-9)
 
 
@@ -225,11 +233,11 @@ def _compare(verdict: Verdict, scenario: Any, ran: _Ran) -> None:
     if ran.result.status is not Status.STOPPED:
         return
     solver = scenario.vehicles[0].solver if isinstance(ran.result, TrainResult) else scenario.solver
-    _compare_ledger(verdict, scenario, ran, solver.tolerance)
-    _compare_finer(verdict, scenario, ran, solver.tolerance)
     if isinstance(scenario, Scenario):
         for kind, other in (*_stronger(scenario, ran), *_same(scenario)):
             _compare_other(verdict, kind, scenario, other, ran)
+    _compare_ledger(verdict, scenario, ran, solver.tolerance)
+    _compare_finer(verdict, scenario, ran, solver.tolerance)
 
 
 def _at(scenario: Any, tolerance: float) -> Any:
@@ -252,17 +260,17 @@ def _compare_ledger(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float
 
 
 def _compare_finer(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float) -> None:
-    try:
-        finer = _distance(_run(_at(scenario, FINER * tolerance)).result)
-    except Cancelled:
-        verdict.looked_at.append("no finer run in time")
-        return
-    lifted = ", lifted" if _lifted(ran) else ""
+    finer = _distance(_run(_at(scenario, FINER * tolerance)).result)
+    single = isinstance(ran.result, Result)
+    protected = single and bool(ran.result.slide_protection_cycles)
+    flowing = any(isinstance(stop.vehicle.liquid, CellLiquid) for stop in ran.stops)
+    apart = {"cells": flowing, "lifted": _lifted(ran), "slide protection at work": protected}
+    sort = "".join(f", {name}" for name, is_so in apart.items() if is_so)
     # a distance is told where the stop speed is passed, not nearer than a hundredth of a millimetre
     miss = max(abs(_distance(ran.result) - finer) - 1e-5, 0.0) / finer
     verdict.traits["miss"] = miss
     verdict.hold(
-        f"distance of a finer run{lifted}", miss, tolerance, f"{finer:.6g} m, locked {verdict.traits['locked']:.3g} s"
+        f"distance of a finer run{sort}", miss, tolerance, f"{finer:.6g} m, locked {verdict.traits['locked']:.3g} s"
     )
 
 
@@ -279,8 +287,12 @@ def _stronger(scenario: Scenario, ran: _Ran) -> Iterator[tuple[str, Mapping[str,
     """A brake 5 % stronger, a resistance 20 % larger: of a load that does not move, and below saturation."""
     if scenario.tank.liquid.model != "rigid" or max(ran.result.locked_time_s) > 0.0 or _lifted(ran):
         return
-    if scenario.braking.slide_protection is None and _creepage(ran.result) < 0.05:
+    if scenario.braking.slide_protection is not None:
+        return  # what it lets go follows samples, not the force
+    if _creepage(ran.result) < 0.05:
         yield "no longer with a stronger brake", _stronger_brake(scenario)
+    if scenario.braking.braked_weight is not None:
+        return  # which tells the distance with the resistance: the more of it, the weaker the brake
     resistance = scenario.wagon.running_resistance
     yield "no longer with more resistance", {"wagon.running_resistance.constant": 1.2 * resistance.constant + 100.0}
 

@@ -63,3 +63,21 @@ def test_a_study_that_comes_no_further_says_since_when(world: World, capsys: pyt
     lines = capsys.readouterr().err.splitlines()
     assert [line.partition(" stops, ")[2].partition(" ")[0] for line in lines] == ["0.1", "none", "0.0"]
     assert lines[1] == "5 of 10 stops, none for 70 s: a worker may hang. Ctrl-C keeps what is finished"
+
+
+def test_without_anybody_watching_a_line_a_minute_says_how_far_and_once_why(
+    world: World, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world.terminal = False
+    with RunProgress("stop", "it has its reason") as bar:
+        for world.now in (5.0, 59.0, 61.0, 100.0, 122.0):
+            bar(0.25, 10.0)
+    lines = capsys.readouterr().err.replace("\n  ", " ").splitlines()
+    assert lines == ["stop: 25% after 61 s, 36.0 km/h; it has its reason", "stop: 25% after 2 min, 36.0 km/h"]
+
+
+def test_beside_a_bar_the_reason_alone_is_told(world: World, capsys: pytest.CaptureFixture[str]) -> None:
+    with RunProgress("stop", "it has its reason") as bar:
+        for world.now in (3.0, 61.0, 122.0):
+            bar(0.25, 10.0)
+    assert capsys.readouterr().err.count("stop: it has its reason") == 1
