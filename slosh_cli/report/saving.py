@@ -9,6 +9,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from slosh_cli.report import FORMATS
 from slosh_cli.results.files import FileError, replacing
@@ -46,6 +47,7 @@ def save(figure: Figure, folder: Path, name: str, formats: Sequence[str] = FORMA
     The layout, a third of the work, is done once; `Figure.savefig` would do it for every format.
     Raises FileError when a file cannot be written, once the others are.
     """
+    _take_words_as_they_are(figure)
     # matplotlib's writers have no types
     png: Any = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
     engine = figure.get_layout_engine()
@@ -67,3 +69,14 @@ def save(figure: Figure, folder: Path, name: str, formats: Sequence[str] = FORMA
     if refusal is not None:
         raise refusal
     return files
+
+
+def _take_words_as_they_are(figure: Figure) -> None:
+    """No word of a figure is a formula: names of wagons and files may hold any sign. Numbers at axes may be powers."""
+    ticks = [
+        tick for one in figure.axes for axis in (one.xaxis, one.yaxis) for tick in (*axis.majorTicks, *axis.minorTicks)
+    ]
+    numbers = {id(label) for tick in ticks for label in (tick.label1, tick.label2)}
+    for text in figure.findobj(Text):
+        if isinstance(text, Text) and id(text) not in numbers:
+            text.set_parse_math(False)

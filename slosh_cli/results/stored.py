@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from slosh_cli.arrays import Vector
+from slosh_cli.errors import printable
 from slosh_cli.results.answers import Answer, PerWheel, Place, Shown
 from slosh_cli.results.channels import TIME, WHEELS, channel, wheel
 from slosh_cli.results.result import Record, Status
@@ -75,11 +76,15 @@ class History(Record):
 
 
 def plain_attributes(holder: Any) -> dict[str, Any]:
-    """The attributes of an open file or group, as plain Python values where they are single ones."""
+    """The attributes of an open file or group, as plain Python values where they are single ones.
+
+    Control characters of texts are spelt out: no picture and no terminal can take them.
+    """
     found = {}
     for key, value in holder.attrs.items():
         single = value.item() if isinstance(value, np.generic) else value
-        found[key] = single.decode("utf-8") if isinstance(single, bytes) else single
+        text = single.decode("utf-8") if isinstance(single, bytes) else single
+        found[key] = printable(text, "\n\t") if isinstance(text, str) else text
     return found
 
 

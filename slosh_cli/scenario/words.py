@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -82,6 +83,8 @@ class Text(Leaf):
         lone = well_formed(value)[1]
         if lone:
             raise ValueRefused("must be text that can be written as UTF-8", f"`{lone}` in it", "write it in UTF-8")
+        if any(unicodedata.category(letter) == "Cc" and letter not in "\n\t" for letter in value):
+            raise ValueRefused("must be text without control characters", plain(value), "take them out")
         if self.pattern and not re.fullmatch(self.pattern, value):
             better = self.repair(value) if self.repair else ""
             raise ValueRefused(
