@@ -24,7 +24,6 @@ LONG_KERNELS = {
 """Kernels longer than a function should be, and why."""
 
 DEFINED_AGAIN = {
-    "TYPE_CHECKING": "what loads before typing may, as long as that takes",
     "compute": "every validation case has one: what the registry calls",
     "critical_speed": "the same formula of a scenario's track and of its assembled rail",
     "excite": "the tank's motion, and the function of the public interface that reads its words",

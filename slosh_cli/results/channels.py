@@ -9,9 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+import numpy as np
+
+from slosh_cli.arrays import Vector
+
 WHEELS = (1, 2, 3, 4)
 """Wheel numbers: 1 leads the front bogie, 4 trails the rear bogie."""
 _BOGIES = (1, 2)
+_MOST_COPIED = 200_000
+"""Rows of a history up to which channels are copied out of the record; memory would have to hold longer ones twice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,3 +150,11 @@ def channel(name: str) -> Channel:
     if match:
         return Channel(name, "m", f"amplitude of longitudinal slosh mode {match[1]}")
     raise KeyError(f"There is no channel named {name!r}.")
+
+
+def read_only(values: Vector) -> Vector:
+    """The values (n,) of a channel as nobody can change them."""
+    whole = values if values.size > _MOST_COPIED else np.ascontiguousarray(values, dtype=np.float64)
+    view = whole.view()
+    view.setflags(write=False)
+    return view

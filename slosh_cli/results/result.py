@@ -11,7 +11,7 @@ import numpy as np
 from slosh_cli.arrays import Vector
 from slosh_cli.errors import UsageError
 from slosh_cli.results.answers import Answers, PerWheel, Place, Shown, Told, computed, derived
-from slosh_cli.results.channels import LINE_CHANNELS, TIME, channel, wheel
+from slosh_cli.results.channels import LINE_CHANNELS, TIME, channel, read_only, wheel
 from slosh_cli.results.validity import PITCH_CHECK, Check
 from slosh_cli.version import install_command
 from slosh_cli.wagon.torque import nominal_torque
@@ -61,8 +61,6 @@ _NOT_THE_LIQUID = ("wheels lifted off", PITCH_CHECK)
 """Checks of the model's range that are not about the liquid: what they tell leaves the distance alone."""
 _LOCKED_SPEED = 1e-3
 """Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a history."""
-_MOST_COPIED = 200_000
-"""Rows of a history up to which channels are copied out of the record; memory would have to hold longer ones twice."""
 _WORST = 5
 """Exceeded checks that the short form of a record names."""
 
@@ -271,8 +269,8 @@ class Result(Record):
     wetted: "WettedAreas | None" = None
 
     def __post_init__(self) -> None:
-        time = _read_only(self.time)
-        columns = {name: _read_only(values) for name, values in self.channels.items()}
+        time = read_only(self.time)
+        columns = {name: read_only(values) for name, values in self.channels.items()}
         for name, values in columns.items():
             channel(name)
             if values.shape != time.shape:
@@ -294,10 +292,3 @@ class Result(Record):
         """
         found = self.as_dict()
         return found | {"warnings": [*found["warnings"], *([self.reason] if self.reason else [])]}
-
-
-def _read_only(values: Vector) -> Vector:
-    whole = values if values.size > _MOST_COPIED else np.ascontiguousarray(values, dtype=np.float64)
-    view = whole.view()
-    view.setflags(write=False)
-    return view
