@@ -42,6 +42,7 @@ def _run_page(path: Path) -> str:
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     history, profile = read_history(path), read_surface(path)
+    data = replay_data(history, profile)  # first of all: it says of a scenario what is wrong with it
     facts = {
         "title": history.name,
         "verdict": _verdict(history),
@@ -51,7 +52,7 @@ def _run_page(path: Path) -> str:
         "tables": _run_tables(history),
         "scenario": history.scenario_text,
     }
-    return page_text(facts, replay_data(history, profile), {})
+    return page_text(facts, data, {})
 
 
 def _verdict(history: History) -> str:
