@@ -46,6 +46,7 @@ def _run_page(path: Path) -> str:
     from slosh_cli.results.hdf5 import read_history, read_surface
 
     history, profile = read_history(path), read_surface(path)
+    data = replay_data(path, history, profile)  # first of all: it says of a scenario what is wrong with it
     facts = {
         "title": history.name,
         "verdict": _verdict(history),
@@ -55,7 +56,7 @@ def _run_page(path: Path) -> str:
         "tables": _run_tables(history),
         "scenario": history.scenario_text,
     }
-    return page_text(facts, replay_data(path, history, profile), {})
+    return page_text(facts, data, {})
 
 
 def _verdict(history: History) -> str:
