@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -77,6 +77,6 @@ def _take_words_as_they_are(figure: Figure) -> None:
         tick for one in figure.axes for axis in (one.xaxis, one.yaxis) for tick in (*axis.majorTicks, *axis.minorTicks)
     ]
     numbers = {id(label) for tick in ticks for label in (tick.label1, tick.label2)}
-    for text in figure.findobj(Text):
-        if isinstance(text, Text) and id(text) not in numbers:
+    for text in cast("list[Text]", figure.findobj(Text)):
+        if id(text) not in numbers:
             text.set_parse_math(False)
