@@ -22,7 +22,7 @@ MEGABYTES = 350.0
 """The most that a command may add to the memory of its process, which has 150 MB with all libraries loaded."""
 PROBLEMS = 20
 MOST_LETTERS = 60_000
-HANGS_AFTER = 120
+HANGS_AFTER = 600
 """Seconds on the clock after which a command counts as hanging."""
 
 EXIT_CODES = (0, 1, 2, 3, 130)

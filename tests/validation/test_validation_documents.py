@@ -208,7 +208,7 @@ def test_rows_of_the_table_of_train_couplers_are_what_a_run_gives_today(train_co
     asked = dict(zip(train_couplers.CONDITIONS, (10, 0.5, "P", "screw"), strict=True)) | {"liquid": liquid}
     (stored,) = train_couplers.only(train_couplers.read(), **asked)
     found = train_couplers.examined(asked, train_couplers.train_of(asked, tmp_path))
-    near = {"steps": 0.02, "energy_residual": 0.02}  # what rounding decides at locks and slack differs between processors
+    near = {"steps": 0.02, "energy_residual": 0.02}  # rounding decides them at locks and slack
     for name, text in found.items():
         told = stored[name]
         assert text == told or float(text) == pytest.approx(float(told), rel=near.get(name, 1e-4)), name
