@@ -60,8 +60,6 @@ _NOT_THE_LIQUID = ("wheels lifted off", PITCH_CHECK)
 """Checks of the model's range that are not about the liquid: what they tell leaves the distance alone."""
 _LOCKED_SPEED = 1e-3
 """Circumferential speed in m/s below which a wheel under a moving wagon counts as locked in a history."""
-_MOST_COPIED = 200_000
-"""Rows of a history up to which channels are copied out of the record; memory would have to hold longer ones twice."""
 _WORST = 5
 """Exceeded checks that the short form of a record names."""
 
@@ -297,7 +295,8 @@ class Result(Record):
 
 
 def _read_only(values: Vector) -> Vector:
-    whole = values if values.size > _MOST_COPIED else np.ascontiguousarray(values, dtype=np.float64)
-    view = whole.view()
+    view = (
+        values if values.size > 200_000 else np.ascontiguousarray(values, np.float64)
+    ).view()  # long: else held twice
     view.setflags(write=False)
     return view
