@@ -295,8 +295,6 @@ class Result(Record):
 
 
 def _read_only(values: Vector) -> Vector:
-    view = (
-        values if values.size > 200_000 else np.ascontiguousarray(values, np.float64)
-    ).view()  # long: else held twice
+    view = (values if values.size > 200_000 else np.ascontiguousarray(values, np.float64)).view()  # or held twice
     view.setflags(write=False)
     return view
