@@ -108,7 +108,7 @@ reference: $(READY)
 	$(BIN)/python -m tests.reference_code
 
 fuzz: $(READY)
-	PYTHONPATH=tests/results $(BIN)/python tests/hostile/campaign.py --inputs $(or $(N),100000) --folder outputs/fuzz
+	PYTHONPATH=tests/results $(BIN)/python tests/hostile/fuzzing.py --inputs $(or $(N),100000) --folder outputs/fuzz
 
 studies: $(READY)
 	$(BIN)/python docs/identifiability.py

@@ -167,7 +167,8 @@ def _coupling(place: int, one: StoredPart) -> tuple[Any, ...]:
 def _ledger(train: TrainHistory) -> Iterator[tuple[str, str, str]]:
     """Energies of all vehicles at the begin and at the end, the work of the couplings, and their sums."""
     total = [0.0, 0.0]
-    names = [name for name in train.vehicles[0].channels if name.startswith("energy_") and name != "energy_residual"]
+    held = [set(one.channels) for one in train.vehicles]
+    names = [name for name in train.vehicles[0].channels if all(name in one for one in held) and _is_energy(name)]
     for name in names:
         begin, end = (sum(float(one.channels[name][row]) for one in train.vehicles) for row in (0, -1))
         sign = -1.0 if name == _GIVEN else 1.0
@@ -177,6 +178,10 @@ def _ledger(train: TrainHistory) -> Iterator[tuple[str, str, str]]:
     yield "work that the couplings took", "0", f"{taken / 1e3:.6g}"
     words = "sum, less the work that came in: the same at both ends but for the residual"
     yield words, f"{total[0] / 1e3:.6g}", f"{(total[1] + taken) / 1e3:.6g}"
+
+
+def _is_energy(name: str) -> bool:
+    return name.startswith("energy_") and name != "energy_residual"
 
 
 def _short(value: float) -> float:

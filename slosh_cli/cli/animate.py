@@ -19,7 +19,7 @@ def animate_command(
         option("--output -o", "FILE", "A .gif, or an .mp4 where ffmpeg is. Default: animation.gif beside FILE.h5."),
     ] = None,
 ) -> ExitCode:
-    """Replay a run, or what `slosh tank excite` did to a tank, as a GIF."""
+    """Replay a run, or an excited tank, as a GIF or MP4."""
     from slosh_cli.application.replay import animate
 
     say(str(animate(history_file, output)))

@@ -135,7 +135,7 @@ class StopsProgress(_Bar):
         if _somebody_watches():
             told = {"rate": f"{rate:.1f}/s", "left": f"{duration(left)} left"} if done else {}
             self._draw(done, total, **told)
-        elif done < total and now - self._moved >= self._every and now - self._noted >= self._every:
+        elif done < total and now - self._moved >= max(self._every, _NOTE_SECONDS) and now - self._noted >= self._every:
             self._noted = now
             since = duration(now - self._moved)
             note(f"{done} of {total} stops, none for {since}: a worker may hang. Ctrl-C keeps what is finished")

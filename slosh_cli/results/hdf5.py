@@ -25,7 +25,7 @@ from slosh_cli.results.stored import (
     plain_attributes,
     stored_columns,
 )
-from slosh_cli.results.stored_train import COUPLING, VEHICLE, stored_train
+from slosh_cli.results.stored_train import COUPLING, SCENARIO, VEHICLE, stored_train
 from slosh_cli.results.surface import SurfaceProfile, surface_profile
 from slosh_cli.results.train_result import TrainHistory, TrainResult
 from slosh_cli.scenario.loader import Root
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 _F = TypeVar("_F")
 _FORMAT: Final = 1
-_SCENARIO: Final = "scenario"
 _LONGEST_TEXT: Final = 1_000_000
 
 
@@ -65,7 +64,7 @@ def write_train(result: TrainResult, path: Path) -> None:
     """The same of a train's stop: histories of vehicles and couplings. Raises as `write_history` does."""
     groups: dict[str, _Group] = {}
     for number, vehicle in enumerate(result.vehicles, 1):
-        facts = vehicle.as_attributes() | {"scenario": scenario_text(vehicle.scenario)}
+        facts = vehicle.as_attributes() | {SCENARIO: scenario_text(vehicle.scenario)}
         found = {channel(name): values for name, values in vehicle.channels.items()}
         surface = surface_profile(vehicle.scenario, result.time, vehicle.channels, vehicle.wetted)
         groups[f"{VEHICLE}{number:03d}"] = _Group(found, facts, surface)
@@ -147,7 +146,7 @@ def _write(
                     write_surface(part, group.surface)
             if more is not None:
                 more(file)
-            file.create_dataset(_SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
+            file.create_dataset(SCENARIO, data=scenario_text(scenario), dtype=h5py.string_dtype())
             for key, value in attributes.items():
                 file.attrs[key] = value
         if steady.trouble is not None:
@@ -188,10 +187,10 @@ def is_excitation(path: Path) -> bool:
 
 def _text(path: Path, file: h5py.File) -> str:
     """The scenario of the run as resolved YAML."""
-    held = file.get(_SCENARIO)
+    held = file.get(SCENARIO)
     is_text = isinstance(held, h5py.Dataset) and held.shape == () and held.dtype.itemsize <= _LONGEST_TEXT
     text = held[()] if is_text else None
-    _refuse(path, [] if isinstance(text, bytes) else [f"it lacks the text {_SCENARIO}"])
+    _refuse(path, [] if isinstance(text, bytes) else [f"it lacks the text {SCENARIO}"])
     return str(text, "utf-8") if isinstance(text, bytes) else ""
 
 
@@ -227,7 +226,7 @@ def inputs_of(path: Path) -> str | None:
         if other_than_file(path):
             return None
         with h5py.File(path, "r") as file:
-            return f"{file.attrs.get('settings', '')}\n{_without_words(file[_SCENARIO][()].decode('utf-8'))}"
+            return f"{file.attrs.get('settings', '')}\n{_without_words(file[SCENARIO][()].decode('utf-8'))}"
     except Exception:  # whatever it is, it is no history of ours
         return None
 

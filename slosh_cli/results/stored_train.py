@@ -15,8 +15,9 @@ from slosh_cli.scenario.schema_train import MOST_VEHICLES
 
 VEHICLE: Final = "vehicle_"
 COUPLING: Final = "coupling_"
+SCENARIO: Final = "scenario"
 _PARTS: Final[Mapping[str, tuple[tuple[Answer, ...], tuple[str, ...]]]] = {
-    VEHICLE: (VehicleResult.table(), ("speed", "brake_application", "surface_front")),
+    VEHICLE: (VehicleResult.table(), ("speed", "position", "brake_application", "surface_front")),
     COUPLING: (CouplingResult.table(), ("force", "compression")),
 }
 """Answers of a part of a train, and the channels that figures cannot do without, by what its group is called."""
@@ -59,6 +60,8 @@ def _faults_of(file: Any, kind: str, name: str) -> Iterator[str]:
         yield f"its {name} must be a group of channels"
         return
     yield from (f"of its {name} {fault}" for fault in faults_of_answers(answers, plain_attributes(group)))
+    if kind == VEHICLE and not isinstance(plain_attributes(group).get(SCENARIO), str):
+        yield f"its {name} lacks the text {SCENARIO}"
     missing = [key for key in needed if key not in group]
     if missing:
         yield f"its {name} lacks the channels {', '.join(missing)}"

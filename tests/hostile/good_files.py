@@ -13,7 +13,7 @@ from slosh_cli.scenario import load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 STUDY = "name: fills\nbase: paper-80-liquid\nvary:\n  braking.onset: 0.5:1:0.1 s\n  contact.adhesion: [dry, wet]\n"
-CHANNELS = ("speed", "brake_application", "surface_front")
+CHANNELS = ("speed", "position", "brake_application", "surface_front")
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def _write_train(path: Path, time: np.ndarray, vehicles: int) -> None:
         for number in range(1, vehicles + 1):
             part = file.create_group(f"vehicle_{number:03d}")
             _tell(part, VehicleResult)
-            part.attrs.update({"name": "wagon", "liquid_model": "modal"})
+            part.attrs.update({"name": "wagon", "liquid_model": "modal", "scenario": "name: wagon\n"})
             for name in CHANNELS:
                 part[name] = np.linspace(1.0, 0.0, time.size)
         for number in range(1, vehicles):

@@ -133,6 +133,8 @@ def spoils(kind: str) -> dict[str, Spoil]:
         for name, holder in NEEDED[kind]
         for words, value in VALUES.items()
     }
+    if kind == "train":
+        found["vehicle_001 without its scenario"] = attribute("scenario", None, "vehicle_001")
     if kind == "run":
         texts = {"a list": "- 1\n", "a name": "name: x\n", "brackets": "[" * 5000, "a half": 'name: "\\ud83d"\n'}
         text = h5py.string_dtype()

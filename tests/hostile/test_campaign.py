@@ -1,7 +1,7 @@
 """Two thousand inputs of every kind, spoilt at random: the answer is always one of ours. `make fuzz` tries more."""
 
 import pytest
-from campaign import SHARES, judged
+from fuzzing import SHARES, judged
 from good_files import Good
 from hypothesis import HealthCheck, given, settings
 from spoiling import strategies

@@ -22,7 +22,7 @@ def test_words_of_a_history_stay_words(command: str, good: Good, folder: Path, m
     with h5py.File("run.h5", "r+") as file:
         file.attrs.update({"name": WORDS, "reason": WORDS, "warnings": WORDS})
     found = asked(command, "run.h5", "-o", "out" if command == "plot" else "out.html")
-    assert (found.code, found.err) == (0, "")
+    assert (found.code, found.err) == (0, ""), found.err
     for page in [*folder.rglob("*.svg"), *folder.rglob("*.html")]:
         text = page.read_text(encoding="utf-8")
         assert "<script>alert" not in text

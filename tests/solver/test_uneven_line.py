@@ -46,7 +46,7 @@ def test_no_step_of_an_uneven_rail_takes_a_wheel_past_a_tenth_of_its_waves(stop)
     coarse = stop("paper_80_solid", FAST, *LINES["level"], "solver.tolerance=1e-2")
     assert coarse.steps >= (coarse.braking_distance_m + 0.5 * 100 / 3.6) / 0.15
     assert stop("paper_80_solid", FAST).steps < 400
-    assert stop("paper_80_solid", FAST, *LINES["level"]).solve_seconds < 0.5
+    assert stop("paper_80_solid", FAST, *LINES["level"]).steps < 5000
 
 
 def test_steps_follow_a_flat_closely(shipped):
