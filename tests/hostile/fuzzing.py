@@ -13,7 +13,7 @@ from pathlib import Path
 from shutil import copy
 
 import h5py
-from answer import Answer, asked
+from answer import Answer, settled
 from good_files import Good, good_files
 from hypothesis import HealthCheck, Phase, given, seed, settings, target
 from hypothesis.database import DirectoryBasedExampleDatabase
@@ -46,7 +46,7 @@ def in_a_folder(one: Given, good: Good) -> Iterator[None]:
 def judged(one: Given, good: Good) -> Answer:
     """The answer to an input."""
     with in_a_folder(one, good):
-        return asked(*one.words)
+        return settled(*one.words)
 
 
 class Campaign:
