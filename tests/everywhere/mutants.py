@@ -47,7 +47,10 @@ TESTS = {
         "tests/solver/test_coupling_kernels.py", "tests/solver/test_couplings.py",
         "-k", "kernels or friction_spring or turns_back or derivatives",
     ),
-    "tank.modal": ("tests/tank/test_liquid_contract.py", "-k", "not is_whole and not same_arguments"),
+    "tank.modal": (
+        "tests/tank/test_modal_kernels.py", "tests/tank/test_liquid_contract.py",
+        "-k", "not is_whole and not same_arguments",
+    ),
     "tank.baffle": ("tests/tank/test_shallow_baffles.py", "-k", "sharp_edged or quadrature or solid"),
     "tank.roof": ("tests/tank/test_shallow_roof.py", "tests/tank/test_shallow_roof_force.py"),
 }  # fmt: skip

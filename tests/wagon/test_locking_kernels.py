@@ -111,7 +111,7 @@ def test_the_torque_that_counts_is_that_of_the_way_a_wheel_turns():
 
 
 class Bumps:
-    """Rails that rise as their place squared, and a wheel with a flat that never ends."""
+    """Rails that rise as their place squared, and a wheel that stands on the slope of a flat."""
 
     uneven = 1
 
@@ -119,7 +119,7 @@ class Bumps:
         return 1e-4 * place * place, 2e-4 * place
 
     def flat(self, wheel, angle):
-        return 1e-5 * angle, 1e-5
+        return 1e-5 * angle, 5e-3
 
 
 @pytest.fixture
@@ -173,6 +173,27 @@ def test_at_its_limit_a_brake_holds_while_what_the_rail_asks_grows_no_faster(sta
     assert holds(1.0 + TINY, rate + 1e-3 * abs(rate))
     assert not holds(1.0 + TINY, rate - 1e-3 * abs(rate))
     assert holds(1.0 - TINY, rate + 1e-3 * abs(rate))
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("slowing", [1.5, -1.5])
+def test_at_its_limit_a_brake_holds_by_how_friction_changes_with_the_speed(standing, way, slowing):
+    """On an even rail, where nothing moves up or down: friction grows as a wagon of 1 m/s slows down."""
+    moved, _ = standing
+    point, contact = moved.points[0], moved.contact
+    contact.surface = SimpleNamespace(uneven=0)
+    point.v[:], point.rail_rate[:], point.rail[2] = 0.0, 0.0, -4e-5
+    point.v[0], point.a[0] = way, -way * slowing
+
+    def asked(ahead):
+        speed = way * (1.0 - slowing * ahead)
+        return RADIUS * abs(contact.creep_force(contact.stiffness * 1e-4**1.5, speed, speed)[0])
+
+    now, rate = asked(0.0), (asked(1e-7) - asked(-1e-7)) / 2e-7
+    assert slowing * rate > 1e3
+    for growth, held in ((rate + 1e-3 * abs(rate), True), (rate - 1e-3 * abs(rate), False)):
+        moved.brake.torque = lambda wheel, time, spin, growth=growth: (now + growth * (time - NOW), 0.0)
+        assert locking.wheel_holds(moved, 1, NOW) == held
 
 
 def test_a_brake_holds_where_nothing_grows(standing):
