@@ -51,7 +51,10 @@ TESTS = {
         "tests/tank/test_modal_kernels.py", "tests/tank/test_liquid_contract.py",
         "-k", "not is_whole and not same_arguments",
     ),
-    "tank.baffle": ("tests/tank/test_shallow_baffles.py", "-k", "sharp_edged or quadrature or solid"),
+    "tank.baffle": (
+        "tests/tank/test_baffle_kernels.py", "tests/tank/test_shallow_baffles.py",
+        "-k", "kernels or sharp_edged or quadrature or solid",
+    ),
     "tank.roof": ("tests/tank/test_shallow_roof.py", "tests/tank/test_shallow_roof_force.py"),
 }  # fmt: skip
 """Modules, and what tells pytest the quick tests that are to notice a change of them."""
@@ -183,6 +186,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.everywhere.mutants")
     parser.add_argument("module", choices=TESTS)
     parser.add_argument("--every", type=int, default=1, help="try every K-th mutant only")
+    parser.add_argument("--lines", type=int, nargs="*", help="try the mutants of these lines only")
     parser.add_argument("--seconds", type=float, default=20.0, help="the time that the tests of a mutant may take")
     parser.add_argument("--tests", nargs="*", help="tests to run in place of the module's own")
     given = parser.parse_args()
@@ -202,7 +206,8 @@ def main() -> int:
             say("the tests fail without any change")
             return 2
         sys.dont_write_bytecode = True
-        chosen = list(mutants(text, given.every))
+        wanted = {f"line {line}" for line in given.lines or ()}
+        chosen = [one for one in mutants(text, given.every) if not wanted or one[0].partition(":")[0] in wanted]
         alive = 0
         for name, mutant in chosen:
             path.write_text(mutant, encoding="utf-8")

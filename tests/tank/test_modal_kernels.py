@@ -53,7 +53,7 @@ def test_oscillators_of_the_share_of_a_tank():
 
 
 def test_energies_are_those_of_the_lagrangian():
-    """`T = lambda_1 u' b' + lambda_02 theta' b' + mu b'^2/2`, `V = mu omega^2 b^2/2 - g lambda_1 theta b`, summed up."""
+    """`T = lambda_1 u' b' + lambda_02 theta' b' + mu b'^2/2`, `V = mu omega^2 b^2/2 - g lambda_1 theta b`, summed."""
     liquid, ride = swaying(), Ride.blank(3)
     ride.speed[:], ride.pitch[:], ride.pitch_rate[:] = (1.0, 2.0, 3.0), (0.01, 0.02, -0.03), (0.5, 0.6, 0.7)
     kinetic, potential, loss = liquid.energy(ride, END)
