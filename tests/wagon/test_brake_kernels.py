@@ -35,7 +35,7 @@ def test_nothing_is_held_before_the_onset():
     assert not brake.is_on()
     assert (brake.next_break(), list(brake.held)) == (0.5, [1.0] * 4)
     brake.pass_break(0.5, np.zeros(5), 1)
-    assert brake.torque(0, 0.5, 3.0) == (5e3, 0.0)
+    assert brake.torque(0, 0.5, 3.0) == brake.torque(3, 9.0, 0.0) == (5e3, 0.0)
     assert brake.is_on()
     assert brake.next_break() == math.inf
 
@@ -68,11 +68,11 @@ def test_friction_of_a_history():
 
 def test_slopes_of_a_friction_table_are_those_of_the_line_that_begins():
     """Per metre a second; none on or beyond the last point, and before the first one."""
-    table = {"speeds": np.array([10.0, 40.0, 100.0]), "frictions": np.array([0.4, 0.3, 0.1])}
+    table = {"speeds": np.array([10.0, 40.0, 100.0]), "frictions": np.array([0.4, 0.34, 0.1])}
     brake = torque_brake(2.0, 0.0, **table)
     for speed, value, slope in [
-        (9.9, 0.4, 0.0), (10.0, 0.4, -0.1 / 30), (25.0, 0.35, -0.1 / 30), (40.0, 0.3, -0.2 / 60),
-        (70.0, 0.2, -0.2 / 60), (100.0, 0.1, 0.0), (400.0, 0.1, 0.0),
+        (9.9, 0.4, 0.0), (10.0, 0.4, -0.002), (25.0, 0.37, -0.002), (40.0, 0.34, -0.004), (70.0, 0.22, -0.004),
+        (100.0, 0.1, 0.0), (400.0, 0.1, 0.0),
     ]:  # fmt: skip
         assert brake.friction(speed / 3.6 * (1 + 1e-15), 1.0) == pytest.approx((value, 3.6 * slope), rel=1e-9)
     for speed in (0.0, 80.0, 81.0):
@@ -86,6 +86,9 @@ def test_application_of_a_stretch():
     brake.breaks = 1
     assert brake.application(1.5) == 0.5
     brake.breaks = 2
+    brake.amplitude[1] = 1.0
+    assert brake.application(5.0) == pytest.approx(0.5 + 0.125 * 2.0 + math.exp(-1.0), rel=1e-15)
+    brake.amplitude[1] = -0.25
     assert brake.application(5.0) == pytest.approx(0.5 + 0.125 * 2.0 - 0.25 * math.exp(-1.0), rel=1e-15)
 
 

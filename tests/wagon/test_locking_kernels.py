@@ -214,6 +214,16 @@ def test_a_brake_without_torque_holds_nothing(standing):
     assert locking.wheel_holds(moved, 1, NOW)
 
 
+def test_a_small_torque_does_not_hold_against_a_small_force(standing):
+    """`f R` of 0.25 N m."""
+    moved, _ = standing
+    for way in (1.0, -1.0):
+        moved.contact.creep_force = lambda normal, slip, speed, way=way: (way * 0.5, 0.0, 0.0, 0.0)
+        for torque, held in ((0.2, False), (0.3, True)):
+            moved.brake.torque = lambda wheel, time, spin, torque=torque: (torque, 0.0)
+            assert locking.wheel_holds(moved, 1, NOW) == held
+
+
 @pytest.fixture
 def told(monkeypatch):
     """Vehicles whose wheels are held as told."""
