@@ -41,7 +41,9 @@ TESTS = {
         "-k", "brake_keys or closed_form or by_hand or cast_iron or braked_weight",
     ),
     "wagon.model": ("tests/wagon/test_wagon_matrices.py", "tests/wagon/test_equations_of_motion.py"),
-    "track.contact": ("tests/track/test_creep_force.py", "tests/track/test_hertz_contact.py"),
+    "track.contact": (
+        "tests/track/test_contact_kernels.py", "tests/track/test_creep_force.py", "tests/track/test_hertz_contact.py",
+    ),
     "track.hertz": ("tests/track/test_creep_force.py", "tests/track/test_hertz_contact.py"),
     "train.coupling": (
         "tests/solver/test_coupling_kernels.py", "tests/solver/test_couplings.py",
@@ -191,7 +193,7 @@ def main() -> int:
     parser.add_argument("--tests", nargs="*", help="tests to run in place of the module's own")
     given = parser.parse_args()
     tests = tuple(given.tests or TESTS[given.module])
-    os.environ["NUMBA_DISABLE_JIT"] = "1"
+    os.environ |= {"NUMBA_DISABLE_JIT": "1", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
     for name in LIBRARIES:
         import_module(name)
     with tempfile.TemporaryDirectory() as scratch:
