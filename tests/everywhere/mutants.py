@@ -37,8 +37,8 @@ TESTS = {
         "-k", "kernels or spin or friction_table or applications or closed_forms or below_the_release",
     ),
     "wagon.torque": (
-        "tests/scenario/test_brake_keys.py", "tests/results/test_data_sheet.py",
-        "-k", "brake_keys or closed_form or by_hand or cast_iron or braked_weight",
+        "tests/wagon/test_brake_torque.py", "tests/scenario/test_brake_keys.py", "tests/results/test_data_sheet.py",
+        "-k", "brake_torque or brake_keys or closed_form or by_hand or cast_iron or braked_weight",
     ),
     "wagon.model": ("tests/wagon/test_wagon_matrices.py", "tests/wagon/test_equations_of_motion.py"),
     "track.contact": (
