@@ -125,6 +125,17 @@ def test_a_rate_that_changes_its_sign_takes_the_spring_to_its_turn_first():
     assert by_rate == pytest.approx(0.5 + (5.0 - 6.0) * 0.4 * -3.0 * 5.0 / (2.0 * 16.0), rel=1e-12)
 
 
+def test_a_spring_between_its_branches_comes_back_the_way_it_went():
+    """From 5 N by 6 N/m over 0.05 m to the turn, and back over 0.45 m: the turn leaves nothing."""
+    made = law(Coupling.model_construct(compression=PUSH, tension=PULL, transition_stiffness=6.0, damping=0.5))
+    of_stages(made, "compression", 0.0, 2.0, 0.0)
+    of_stages(made, "spring", 0.0, 5.0, 0.0)
+    made.rate[MIDDLE] = 1.0
+    force, by_place, by_rate = made.follow(0, END, 0.4, 1.6, -3.0)
+    assert made.turn[END, 0] == pytest.approx(5.3, rel=1e-12)
+    assert (force, by_place, by_rate) == pytest.approx((5.0 - 6.0 * 0.4 - 1.5, 6.0, 0.5), rel=1e-12)
+
+
 def test_a_rate_that_only_comes_to_rest_turns_nothing():
     made = law()
     made.compression[START], made.spring[START] = 2.0, 3.0

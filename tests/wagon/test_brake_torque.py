@@ -102,6 +102,7 @@ def test_a_stop_within_the_build_up_has_its_closed_form(deceleration):
         ((0.0, 1e4, 0.0), 30.0 / 0.2),  # V T, which it only comes near
         ((1e7, 0.0, 0.0), 30.0**2 / 400),  # within the delay
         ((5e5, 0.0, 0.0), 30.0**2 / 20),  # within the build-up
+        ((5e5, 1e5, 0.0), 15.0 - 2.5 * math.log(7.0)),  # there, too: `m/b (V - c/b ln(1 + b V/c))`
         ((5e4, 0.0, 500.0), math.log(1 + 0.01 * 900) / 0.02),
     ],
 )
