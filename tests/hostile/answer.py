@@ -88,7 +88,7 @@ def asked(*words: str | Path) -> Answer:
 
 
 def settled(*words: str | Path) -> Answer:
-    """What `slosh` answers; asked once more where it took long and nothing else is wrong, for a busy machine is slower."""
+    """What `slosh` answers, asked once more where it took long and nothing else is wrong: a busy machine is slower."""
     found = asked(*words)
     return asked(*words) if found.seconds > SECONDS and len(found.faults) == 1 else found
 
@@ -96,9 +96,7 @@ def settled(*words: str | Path) -> Answer:
 def answer(*words: str | Path, code: int | None = None) -> Answer:
     """What `slosh` answers to the words; fails where it is not what an answer must be, or has another exit code."""
     found = asked(*words)
-    if (
-        found.seconds > SECONDS and len(found.faults) == 1
-    ):  # once more: a busy machine is slower
+    if found.seconds > SECONDS and len(found.faults) == 1:  # once more: a busy machine is slower
         found = asked(*words)
     assert not found.faults, (found.words, found.faults)
     assert code is None or found.code == code, (found.words, found.code, found.out[-800:], found.err[-2000:])
