@@ -10,7 +10,7 @@ from shallow_tools import BOX, CIRCLE, G
 
 from slosh_cli.tank import baffle as kernels
 from slosh_cli.tank import section_table as sections
-from slosh_cli.tank.baffle import CLOSED, baffles_at
+from slosh_cli.tank.baffle import baffles_at
 from tests.plain_kernels import as_python
 
 WIDTH, HEIGHT = 2.5, 3.0
@@ -29,7 +29,7 @@ def table(section=BOX):
 def test_walls_by_their_faces():
     """Rows in the order given; empty bands fill up those with fewer openings."""
     walls = baffles_at(6, {1: (), 4: ((0.1, 0.2, 0.5), (1.0, 3.0, 1.0)), 2: ((0.3, 0.4, 0.25),), 5: ()})
-    assert walls.at.tolist() == [0, CLOSED, 2, 0, 1, CLOSED, 0]
+    assert walls.at.tolist() == [0, -1, 2, 0, 1, -1, 0]
     assert walls.low.tolist() == [[0.1, 1.0], [0.3, 0.0]]
     assert walls.high.tolist() == [[0.2, 3.0], [0.4, 0.0]]
     assert walls.share.tolist() == [[0.5, 1.0], [0.25, 0.0]]
