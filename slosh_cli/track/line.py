@@ -9,7 +9,7 @@ from slosh_cli.blocks import Block
 from slosh_cli.compiled import inner_kernel
 from slosh_cli.vectors import cell_of
 
-_OVERSHOOT = 0.5
+_SHORTEST_WAY = 0.5
 """m; half of the least distance between two points."""
 
 
@@ -42,12 +42,12 @@ class Line(Block):
 
     @inner_kernel
     def way_ahead(self, place):
-        """Way (m) that a step from a `place` (m) may take: hardly beyond the next point of the gradient's table."""
+        """Way (m) that a step from a `place` (m) may take: to the next point of the gradient's table."""
         places = self.places
         if places.size < 2 or place >= places[places.size - 1]:
             return math.inf
         following = places[0] if place < places[0] else places[cell_of(places, place) + 1]
-        return following - place + _OVERSHOOT
+        return max(following - place, _SHORTEST_WAY)
 
     @inner_kernel
     def resisting_force(self, speed):

@@ -95,18 +95,21 @@ class RollingSurface(Block):
 
     @inner_kernel
     def way_ahead(self, wheel, place):
-        """Way (m) that a step may take a wheel: a part of the shortest wavelength, beyond what is even."""
+        """Way (m) that a step may take a wheel: a part of the shortest wavelength; where it is even, to its end.
+
+        A long step that ended beyond would weigh what is there with its own length.
+        """
         knots, shape, x = self.knots, self.shape, place + self.ahead[wheel]
         last = knots.size - 1
         if last < 1 or self.period > 0.0:
             return self.longest_way
         if x < knots[0]:
-            return knots[0] - x + self.longest_way
+            return max(knots[0] - x, self.longest_way)
         if x >= knots[last]:
             return math.inf
         cell = cell_of(knots, x)
         flat = shape[cell, 0] == shape[cell, 1] == shape[cell + 1, 0] == shape[cell + 1, 1] == 0.0
-        return self.longest_way + (knots[cell + 1] - x if flat else 0.0)
+        return max(knots[cell + 1] - x, self.longest_way) if flat else self.longest_way
 
     @inner_kernel
     def turning_step(self, wheel, angle, spin):
@@ -116,7 +119,7 @@ class RollingSurface(Block):
             return math.inf
         turned = angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi))
         fine = max(_FLAT_STEP, extent / (_FLAT_STEPS * spin))
-        return fine if turned < _RINGING * extent else fine + (2.0 * math.pi - turned) / spin
+        return fine if turned < _RINGING * extent else max(fine, (2.0 * math.pi - turned) / spin)
 
     def levels(self, places: Vector) -> Vector:
         """Heights (n,) m of the unloaded rail under the leading wheel of a vehicle at the `places` (n,) m."""

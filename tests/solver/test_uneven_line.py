@@ -5,6 +5,7 @@ import pytest
 
 from slosh_cli.results.channels import wheel
 from slosh_cli.results.simulate import simulate
+from tests.campaign.wagons import scenario_of, wagon
 
 FAST = "braking.initial_speed=100 km/h"
 LINES = {
@@ -56,6 +57,12 @@ def test_steps_follow_a_flat_closely(shipped):
     fine = 3 * 0.06 / 27.0 / 5e-5  # steps of 0.05 ms over the flat and twice its length behind it
     assert flat.steps > turns * fine
     assert flat.max_wheel_load_N[3] > 2 * flat.max_wheel_load_N[0]
+
+
+def test_the_ledger_closes_over_many_turns_of_a_flat():
+    """A light wagon with long steps between its flats: 3.6e-5 when these ended within the flat."""
+    light = scenario_of(wagon(1015)).with_({"tank.liquid.model": "rigid", "solver.time_limit": 3.0})
+    assert simulate(light).energy_residual < 2e-6
 
 
 def test_a_downhill_steeper_than_the_brakes_ends_at_the_time_limit(shipped):

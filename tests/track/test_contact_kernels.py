@@ -79,3 +79,22 @@ def test_a_contact_stores_two_fifths_of_its_force_times_its_approach():
         assert work == pytest.approx(made.normal_force(approach)[0], rel=1e-6)
     for apart in (0.0, -1e-4, -1.0):
         assert made.energy(apart) == 0.0
+
+
+def test_a_step_ends_where_a_flat_begins():
+    """A step that ends within the flat weighs it with its own length: a light wagon's ledger missed 2e-4 so."""
+    rolling, spin = uneven(), 40.0
+    before, behind = 2 * math.pi - 1.0, 4.0 * EXTENT
+    assert rolling.turning_step(1, before, spin) == pytest.approx(1.0 / spin)
+    assert rolling.turning_step(1, behind, spin) == pytest.approx((2 * math.pi - behind) / spin)
+    near = rolling.turning_step(1, 2 * math.pi - 1e-9, spin)
+    assert near == rolling.turning_step(1, 0.1, spin) > 1e-9  # none is shorter than over the flat itself
+    assert rolling.turning_step(0, before, spin) == math.inf
+
+
+def test_a_step_ends_where_a_rail_becomes_uneven():
+    even = [[0.0, 0.0, 0.0, 0.0]]
+    shape = np.array([*even, [1e-3, 0.0, 0.0, 0.0], *even, *even, [1e-3, 0.0, 0.0, 0.0], *even])
+    rolling = uneven().replaced(knots=np.array([10.0, 11.0, 12.0, 20.0, 21.0, 22.0]), shape=shape, longest_way=0.2)
+    ways = [rolling.way_ahead(0, place - 5.0) for place in (3.0, 9.9, 10.5, 13.0, 19.9, 22.5)]
+    assert ways == pytest.approx([7.0, 0.2, 0.2, 7.0, 0.2, math.inf])
