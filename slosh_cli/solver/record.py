@@ -66,6 +66,7 @@ def interpolate(vehicle, row, time, step, part, residual):
     hermites(start.q, start.v, end.q, end.v, cubic, row, 1)
     hermites(start.v, start.a, end.v, end.a, cubic, row, 1 + size)
     parabolas(start.a, middle.a, end.a, parabola, row, 1 + 2 * size)
+    _follow_grip(vehicle, row, step, parabola)
     _interpolate_wheels(vehicle, row, time + part * step, cubic, parabola)
     first = 2 + 3 * size + 6 * wagon.wheels
     before, after = account.energies_before, account.energies
@@ -75,6 +76,25 @@ def interpolate(vehicle, row, time, step, part, residual):
     hermites(account.losses_before, start.power, account.losses, end.power, cubic, row, first)
     row[first + LOSSES] = residual
     vehicle.liquid.record(row, first + LOSSES + 1, part, cubic, parabola)
+
+
+@inner_kernel
+def _follow_grip(vehicle, row, step, weights):
+    """Spins of the wheels that grip: their slip is the parabola through the stages' own.
+
+    Where the creep force brings a wheel to the wagon's speed sooner than a step (s) lasts, the spin's rate at the ends
+    of the step says little of what is between: a cubic through it may run ahead of the wagon.
+    """
+    start, middle, end = vehicle.points[START], vehicle.points[MIDDLE], vehicle.points[END]
+    wagon, by_slip, radius = vehicle.wagon, vehicle.scratch.creep_by_slip, vehicle.wagon.wheel_radius
+    speeds = 1 + wagon.coordinates
+    for i in range(wagon.wheels):
+        spin = wagon.first_spin + i
+        if vehicle.locked[i] or step * radius * radius * by_slip[i] < wagon.mass[spin, spin]:
+            continue
+        slip = weights[0] * (start.v[0] - radius * start.v[spin]) + weights[1] * (middle.v[0] - radius * middle.v[spin])
+        slip += weights[2] * (end.v[0] - radius * end.v[spin])
+        row[speeds + spin] = (row[speeds] - slip) / radius
 
 
 @inner_kernel
