@@ -16,6 +16,7 @@ from slosh_cli.results.filling import filling_checks
 from slosh_cli.results.histories import LOSS_PLACES, WHOLE, channels_of
 from slosh_cli.results.line import check_covered
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
+from slosh_cli.results.protection import protection_check
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
@@ -83,6 +84,9 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     stopped, tank, weight = status is Status.STOPPED, scenario.tank, stop.weight
     advice = _recommended(scenario)
     verdicts = _verdicts(scenario, stop, run, advice)
+    distance = float(end.q[POSITION] - account.onset_position) if stopped else None
+    if distance is not None and vehicle.brake.vents.any():
+        verdicts += (protection_check(scenario, distance, progress, cancel),)
     return Result(
         scenario=scenario,
         status=status,
@@ -92,7 +96,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
         recommendation=advice,
         time=run.rows[:, 0, 0],
         channels=channels_of(scenario, vehicle, run.rows[:, 0]),
-        braking_distance_m=float(end.q[POSITION] - account.onset_position) if stopped else None,
+        braking_distance_m=distance,
         braking_time_s=time - account.onset_time if stopped else None,
         max_surface_m=account.surface,
         surface_limit_m=section_of(tank).height * (1 - tank.fill),

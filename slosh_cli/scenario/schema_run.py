@@ -159,10 +159,14 @@ class Contact(Part):
     )
 
 
+SMALLEST_TOLERANCE = 1e-8
+"""Below it rounding rules."""
+
+
 class Solver(Part):
     """Accuracy and patience."""
 
-    tolerance: Annotated[float, Number(Range(1e-8, 1e-2), "1e-4")] = Field(
+    tolerance: Annotated[float, Number(Range(SMALLEST_TOLERANCE, 1e-2), "1e-4")] = Field(
         default=1e-4, description="Relative error aimed at in the braking distance."
     )
     time_limit: Annotated[float, Quantity("time", Range(0.01, 1e5), "600 s")] = Field(
