@@ -116,6 +116,8 @@ def _interpolate_wheels(vehicle, row, time, cubic, parabola):
         creep = _recorded_creep(vehicle, i, normal, speed - radius * spin, speed, parabola)
         way = vehicle.turning[i]
         torque, _ = vehicle.brake.torque(i, time, way * spin)
+        if way * spin < 0.0 < torque:  # the step ends a little after the instant at which the brake stops the wheel
+            row[1 + size + wagon.first_spin + i] = 0.0
         row[first + i] = normal
         row[first + wheels + i] = creep
         row[first + 2 * wheels + i] = creep * radius if vehicle.locked[i] else way * torque

@@ -50,6 +50,7 @@ def _part_of_middle(train, step):
 def _expect(vehicle, step):
     """Let the liquid get ready for the step, and the start's accelerations follow; False when it could not."""
     wagon, point = vehicle.wagon, vehicle.points[START]
+    vehicle.scratch.pull = vehicle.line.pull_at(point.q[0])  # the last stage solved may be of a step that was rejected
     read_ride(vehicle, point)
     ready, force, moment = vehicle.liquid.expect(vehicle.ride, step)
     if force != 0.0 or moment != 0.0:
