@@ -11,9 +11,10 @@ from slosh_cli.method import START
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.schema_run import SMALLEST_TOLERANCE
+from slosh_cli.scenario.train_file import TrainScenario
 from slosh_cli.solver.advance import STOPPED
 from slosh_cli.solver.run import Cancel, Progress, integrate
-from slosh_cli.solver.setup import problem
+from slosh_cli.solver.setup import ReadyStop, problem, train_problem
 from slosh_cli.wagon.model import POSITION
 
 PROTECTION = "slide protection resolved"
@@ -21,15 +22,21 @@ _FINER = 0.5
 """Of the tolerance: other steps, at little more than the same cost; a tenth tells the same where it was tried."""
 
 
-def protection_check(scenario: Scenario, distance: float, progress: Progress | None, cancel: Cancel | None) -> Check:
+def protection_check(
+    scenario: Scenario | TrainScenario, distance: float, progress: Progress | None, cancel: Cancel | None
+) -> Check:
     """The verdict on a braking `distance` (m) that slide protection had a part in: what half the tolerance gives.
 
     `progress` and `cancel` are those of `simulate`.
     """
-    tolerance = scenario.solver.tolerance
-    finer = _distance(scenario, max(_FINER * tolerance, SMALLEST_TOLERANCE), progress, cancel)
-    miss = 1.0 if finer is None else abs(finer / distance - 1.0)
-    found = "the wagon does not stop" if finer is None else f"it is {finer:.6g} m"
+    first = scenario if isinstance(scenario, Scenario) else scenario.vehicles[0]
+    tolerance = first.solver.tolerance
+    stop = _stop(scenario, max(_FINER * tolerance, SMALLEST_TOLERANCE))
+    run, vehicle = integrate(stop, progress, cancel), stop.vehicle
+    miss, found = 1.0, "the wagon does not stop"
+    if run.outcome == STOPPED:
+        finer = float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
+        miss, found = abs(finer / distance - 1.0), f"it is {finer:.6g} m"
     return Check(
         PROTECTION,
         "accuracy",
@@ -40,10 +47,9 @@ def protection_check(scenario: Scenario, distance: float, progress: Progress | N
     )
 
 
-def _distance(scenario: Scenario, tolerance: float, progress: Progress | None, cancel: Cancel | None) -> float | None:
-    """The braking distance (m) at a tolerance; None where the wagon does not stop."""
-    stop = problem(scenario.with_({"solver.tolerance": tolerance}))
-    run, vehicle = integrate(stop, progress, cancel), stop.vehicle
-    if run.outcome != STOPPED:
-        return None
-    return float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
+def _stop(scenario: Scenario | TrainScenario, tolerance: float) -> ReadyStop:
+    """The stop at another tolerance; of a train that of its first vehicle."""
+    if isinstance(scenario, Scenario):
+        return problem(scenario.with_({"solver.tolerance": tolerance}))
+    train = scenario.with_({"all.solver.tolerance": tolerance, "vehicles.1.solver.tolerance": tolerance})
+    return train_problem(train.vehicles, train.file.coupling)[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any, cast
 
@@ -134,13 +135,17 @@ def simulate_train(
     status, reason = _ending(run, braked)
     stopped = status is Status.STOPPED
     vehicles = tuple(_of_vehicle(scenario, stop, run) for scenario, stop in zip(train.vehicles, stops, strict=True))
+    distance = place - first.account.onset_position if stopped else None
+    if distance is not None and any(stop.vehicle.brake.vents.any() for stop in stops):
+        verdict = protection_check(train, distance, progress, cancel)
+        vehicles = (replace(vehicles[0], checks=(*vehicles[0].checks, verdict)), *vehicles[1:])
     return TrainResult(
         scenario=train,
         status=status,
         reason=reason.format(time=clock, speed=mean_speed(run.train)),
         warnings=(*gathered([vehicle.checks for vehicle in vehicles]), *slack_warnings(train)),
         time=run.rows[:, 0, 0],
-        braking_distance_m=place - first.account.onset_position if stopped else None,
+        braking_distance_m=distance,
         braking_time_s=clock - first.account.onset_time if stopped else None,
         vehicles=vehicles,
         couplings=_of_couplings(run),

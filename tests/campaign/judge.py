@@ -264,10 +264,9 @@ def _compare_ledger(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float
 
 def _compare_finer(verdict: Verdict, scenario: Any, ran: _Ran, tolerance: float) -> None:
     finer = _distance(_run(_at(scenario, FINER * tolerance)).result)
-    single = isinstance(ran.result, Result)
-    protected = single and bool(ran.result.slide_protection_cycles)
     flowing = any(isinstance(stop.vehicle.liquid, CellLiquid) for stop in ran.stops)
-    told = [one.value for one in ran.result.checks if one.name == PROTECTION and not one.within] if single else []
+    said = [one for one in _vehicles(ran.result)[0].checks if one.name == PROTECTION]
+    protected, told = bool(said), [one.value for one in said if not one.within]
     apart = {"cells": flowing, "lifted": _lifted(ran), "slide protection at work": protected}
     sort = "".join(f", {name}" for name, is_so in apart.items() if is_so)
     # a distance is told where the stop speed is passed, not nearer than a hundredth of a millimetre

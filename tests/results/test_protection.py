@@ -3,7 +3,8 @@
 import pytest
 
 from slosh_cli.results.protection import PROTECTION
-from slosh_cli.results.simulate import simulate
+from slosh_cli.results.simulate import simulate, simulate_train
+from tests.campaign.trains import train, train_of
 from tests.campaign.wagons import scenario_of, wagon
 
 LIGHT = (
@@ -53,3 +54,13 @@ def test_nothing_is_said_where_slide_protection_had_nothing_to_do(stop):
     dry = stop("paper_80_solid", "braking.slide_protection={}", "braking.torque=2 kN m")
     assert dry.slide_protection_cycles == 0
     assert said_of(dry) is None
+
+
+def test_a_train_says_it_of_its_first_vehicle():
+    """Four wagons at the limit of adhesion: 106.38 m, but 106.47 m with a hundredth of the tolerance."""
+    result = simulate_train(train_of(train(210)))
+    said = said_of(result.vehicles[0])
+    assert said.limit == 1e-4
+    assert said.value > 3e-4
+    assert not any(said_of(vehicle) for vehicle in result.vehicles[1:])
+    assert any(said.meaning in words for words in result.warnings)
