@@ -7,6 +7,8 @@ however small the steps. So a run in which slide protection worked is held again
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from slosh_cli.method import START
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
@@ -22,13 +24,20 @@ _FINER = 0.5
 """Of the tolerance: other steps, at little more than the same cost; a tenth tells the same where it was tried."""
 
 
-def protection_check(
-    scenario: Scenario | TrainScenario, distance: float, progress: Progress | None, cancel: Cancel | None
-) -> Check:
+def protection_checks(
+    scenario: Scenario | TrainScenario,
+    stops: Sequence[ReadyStop],
+    distance: float,
+    progress: Progress | None,
+    cancel: Cancel | None,
+) -> tuple[Check, ...]:
     """The verdict on a braking `distance` (m) that slide protection had a part in: what half the tolerance gives.
 
-    `progress` and `cancel` are those of `simulate`.
+    `stops` are those of the vehicles, run; without a brake that vented nothing is said. `progress` and `cancel` are
+    those of `simulate`.
     """
+    if not any(stop.vehicle.brake.vents.any() for stop in stops):
+        return ()
     first = scenario if isinstance(scenario, Scenario) else scenario.vehicles[0]
     tolerance = first.solver.tolerance
     stop = _stop(scenario, max(_FINER * tolerance, SMALLEST_TOLERANCE))
@@ -37,14 +46,11 @@ def protection_check(
     if run.outcome == STOPPED:
         finer = float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
         miss, found = abs(finer / distance - 1.0), f"it is {finer:.6g} m"
-    return Check(
-        PROTECTION,
-        "accuracy",
-        miss,
-        tolerance,
+    meaning = (
         f"The braking distance of {distance:.6g} m is good to {100.0 * miss:.1g} % only: with half the tolerance "
-        f"{found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow.",
+        f"{found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow."
     )
+    return (Check(PROTECTION, "accuracy", miss, tolerance, meaning),)
 
 
 def _stop(scenario: Scenario | TrainScenario, tolerance: float) -> ReadyStop:

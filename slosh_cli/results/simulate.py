@@ -17,7 +17,7 @@ from slosh_cli.results.filling import filling_checks
 from slosh_cli.results.histories import LOSS_PLACES, WHOLE, channels_of
 from slosh_cli.results.line import check_covered
 from slosh_cli.results.liquid_range import Motion, motion_checks, tank_checks
-from slosh_cli.results.protection import protection_check
+from slosh_cli.results.protection import protection_checks
 from slosh_cli.results.recommendation import Recommendation, recommend, stop_deceleration
 from slosh_cli.results.rest import rest_checks
 from slosh_cli.results.result import Result, Status
@@ -28,6 +28,7 @@ from slosh_cli.results.validity import Check, Extent, checks, warnings_of
 from slosh_cli.results.wagon_range import residual_cause, wagon_checks
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.train_file import TrainScenario
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from slosh_cli.section import section_of
 from slosh_cli.solver import advance
 from slosh_cli.solver.run import RINGING, Cancel, Progress, Run, integrate, mean_speed
@@ -76,8 +77,7 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     where slosh coefficients cannot be computed.
     """
     stop = problem(scenario)
-    static_loads = _per_wheel(stop.static_loads)
-    run = integrate(stop, progress, cancel)
+    static_loads, run = _per_wheel(stop.static_loads), integrate(stop, progress, cancel)
     vehicle, time = stop.vehicle, stop.train.time
     end, account, braked = vehicle.points[START], vehicle.account, vehicle.brake.breaks > 0
     check_covered(scenario, float(end.q[POSITION]))
@@ -86,8 +86,8 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, cancel: Ca
     advice = _recommended(scenario)
     verdicts = _verdicts(scenario, stop, run, advice)
     distance = float(end.q[POSITION] - account.onset_position) if stopped else None
-    if distance is not None and vehicle.brake.vents.any():
-        verdicts += (protection_check(scenario, distance, progress, cancel),)
+    if distance is not None:
+        verdicts += protection_checks(scenario, [stop], distance, progress, cancel)
     return Result(
         scenario=scenario,
         status=status,
@@ -136,9 +136,9 @@ def simulate_train(
     stopped = status is Status.STOPPED
     vehicles = tuple(_of_vehicle(scenario, stop, run) for scenario, stop in zip(train.vehicles, stops, strict=True))
     distance = place - first.account.onset_position if stopped else None
-    if distance is not None and any(stop.vehicle.brake.vents.any() for stop in stops):
-        verdict = protection_check(train, distance, progress, cancel)
-        vehicles = (replace(vehicles[0], checks=(*vehicles[0].checks, verdict)), *vehicles[1:])
+    if distance is not None:
+        verdicts = (*vehicles[0].checks, *protection_checks(train, stops, distance, progress, cancel))
+        vehicles = (replace(vehicles[0], checks=verdicts), *vehicles[1:])
     return TrainResult(
         scenario=train,
         status=status,
@@ -239,12 +239,15 @@ def _verdicts(scenario: Scenario, stop: ReadyStop, run: Run, advice: Recommendat
     alone = len(stop.train.vehicles) == 1
     flowing = isinstance(liquid, CellLiquid)
     head = max(liquid.deepest - float(liquid.shallow.table.depth[-1]), 0.0) if flowing else 0.0
-    motion = Motion(stop.vehicle.account.surface, head)
+    account = stop.vehicle.account
+    seconds = stop.train.time - account.onset_time if stopped else None
+    part = liquid.shallow.mass * STANDARD_GRAVITY / stop.weight if flowing else 0.0
+    motion = Motion(account.surface, head, seconds=seconds, part=part)
     return (
         *tank_checks(tank, sentence),
         *motion_checks(tank, motion, sentence),
         *checks(_extent(scenario, stop, run)),
-        slide_check(_slides(stop.vehicle.account), scenario),
+        slide_check(_slides(account), scenario),
         *filling_checks(tank, scenario.limits),
         *wagon_checks(scenario),
         *(rest_checks(scenario, stop) if stopped and alone else ()),

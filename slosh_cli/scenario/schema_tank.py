@@ -14,6 +14,7 @@ from slosh_cli.scenario.schema_polygon import Outline
 from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import Choice
 
+MOST_CELLS = 2000
 _FOLLOWS: Any = None
 """No value of its own: `TankBase.loaded` finds it."""
 _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")
@@ -33,7 +34,7 @@ class Liquid(Part):
         default=0.0,
         description="Damping ratio of every computed slosh mode (given coefficients carry their own).",
     )
-    cells: Annotated[int, Count(10, 2000)] = Field(
+    cells: Annotated[int, Count(10, MOST_CELLS)] = Field(
         default=120, description="Finite volumes along the tank; only the shallow-water model uses them."
     )
     slot_speed: Annotated[float, Quantity("speed", Range(5.0, 100.0), "30 m/s")] = Field(

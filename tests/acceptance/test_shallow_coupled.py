@@ -235,6 +235,7 @@ def test_every_run_has_verdicts_in_json_hdf5_and_tables(stop, liquid, tmp_path):
             "excess of the first slosh frequency",
             "head of pressure under the roof",
             "liquid in the slot over the room above the liquid",
+            "time of a wave through a cell over that of the stop, for the liquid's part of the mass",
             push,
         },
     }

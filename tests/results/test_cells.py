@@ -1,0 +1,57 @@
+"""Cells that are too few for a short stop: the run says so, and how far the distance may be off."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from slosh_cli.results.simulate import simulate
+from tests.campaign.wagons import scenario_of
+
+NAME = "time of a wave through a cell over that of the stop, for the liquid's part of the mass"
+KEPT = json.loads((Path(__file__).parents[1] / "data" / "hostile_wagons.json").read_text(encoding="utf-8"))
+SHORT = scenario_of(KEPT["phys_2_903"])
+"""A stop of 1.1 m with 20 cells."""
+
+
+def said_of(result):
+    """The verdict on the cells, or none."""
+    return next((one for one in result.checks if one.name == NAME), None)
+
+
+def with_cells(count):
+    return simulate(SHORT.with_({"tank.liquid.cells": count}))
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {count: with_cells(count) for count in (20, 40, 320)}
+
+
+def test_it_falls_with_the_cells_and_bounds_what_they_miss(found):
+    reference = found[320].braking_distance_m
+    for count in (20, 40):
+        missed = 1.0 - found[count].braking_distance_m / reference
+        assert 0.0 < missed < 0.7 * said_of(found[count]).value
+    shares = [count * said_of(one).value * one.braking_time_s for count, one in found.items()]
+    assert shares == pytest.approx([shares[0]] * 3, rel=1e-9)
+
+
+def test_a_short_stop_with_few_cells_names_the_number_that_would_do(found):
+    coarse = said_of(found[20])
+    assert not coarse.within
+    assert coarse.meaning in found[20].warnings
+    assert "Waves cross only 9 cells while the wagon stops" in coarse.meaning
+    enough = int(coarse.meaning.rpartition("cells: ")[2].rstrip("`."))
+    assert enough == pytest.approx(20 * coarse.value / coarse.limit, abs=1)
+    assert said_of(with_cells(enough + 1)).within
+
+
+def test_an_ordinary_stop_has_cells_enough(stop):
+    assert said_of(stop("paper_80", "tank.liquid.model=shallow-water", "tank.liquid.cells=20")).within
+
+
+def test_other_liquids_and_stops_that_do_not_end_say_nothing(stop):
+    assert said_of(stop("paper_80")) is None
+    short = ("tank.liquid.model=shallow-water", "solver.time_limit=1 s")
+    assert said_of(stop("paper_80", *short)) is None
