@@ -129,7 +129,7 @@ def _motion_checks(tank: Tank, motion: Motion, advice: str) -> Iterator[Check]:
         )
         if motion.slot_alone:
             yield _slot_check(tank, motion.head)
-        if motion.seconds is not None:
+        if motion.seconds:  # none of a run without a stop, zero of one that stood at the onset
             yield _cells_check(tank, motion.seconds, motion.part)
 
 
@@ -140,14 +140,17 @@ def _cells_check(tank: Tank, seconds: float, part: float) -> Check:
     speed = math.sqrt(STANDARD_GRAVITY * section.area(depth) / section.surface_width(depth))
     cells = tank.liquid.cells
     crossed = cells * speed * seconds / tank.length
-    enough = min(math.ceil(part * cells / crossed / _CELL_LIMIT), MOST_CELLS)
+    enough = math.ceil(part * cells / crossed / _CELL_LIMIT)
+    fix = f"Write `tank.liquid.cells: {enough}`."
+    if enough > MOST_CELLS:
+        fix = f"It would take {enough} cells, more than the {MOST_CELLS} that there can be."
     return Check(
         "time of a wave through a cell over that of the stop, for the liquid's part of the mass",
         "accuracy",
         part / crossed,
         _CELL_LIMIT,
         f"Waves cross only {crossed:.0f} cells while the wagon stops: the liquid pushes late, and the braking distance "
-        f"may be up to {100.0 * _SHORT * part / crossed:.1g} % short. Write `tank.liquid.cells: {enough}`.",
+        f"may be up to {100.0 * _SHORT * part / crossed:.1g} % short. {fix}",
     )
 
 

@@ -20,7 +20,7 @@ from slosh_cli.solver.setup import ReadyStop, problem, train_problem
 from slosh_cli.wagon.model import POSITION
 
 PROTECTION = "slide protection resolved"
-_FINER = 0.5
+_HALF, _TWICE = (0.5, "half"), (2.0, "twice")
 """Of the tolerance: other steps, at little more than the same cost; a tenth tells the same where it was tried."""
 
 
@@ -33,6 +33,7 @@ def protection_checks(
 ) -> tuple[Check, ...]:
     """The verdict on a braking `distance` (m) that slide protection had a part in: what half the tolerance gives.
 
+    Beside the smallest tolerance it is twice of it.
     `stops` are those of the vehicles, run; without a brake that vented nothing is said. `progress` and `cancel` are
     those of `simulate`.
     """
@@ -40,14 +41,15 @@ def protection_checks(
         return ()
     first = scenario if isinstance(scenario, Scenario) else scenario.vehicles[0]
     tolerance = first.solver.tolerance
-    stop = _stop(scenario, max(_FINER * tolerance, SMALLEST_TOLERANCE))
+    part, words = _HALF if _HALF[0] * tolerance >= SMALLEST_TOLERANCE else _TWICE
+    stop = _stop(scenario, part * tolerance)
     run, vehicle = integrate(stop, progress, cancel), stop.vehicle
     miss, found = 1.0, "the wagon does not stop"
     if run.outcome == STOPPED:
-        finer = float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
-        miss, found = abs(finer / distance - 1.0), f"it is {finer:.6g} m"
+        other = float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
+        miss, found = abs(other / distance - 1.0), f"it is {other:.6g} m"
     meaning = (
-        f"The braking distance of {distance:.6g} m is good to {100.0 * miss:.1g} % only: with half the tolerance "
+        f"The braking distance of {distance:.6g} m is good to {100.0 * miss:.1g} % only: with {words} the tolerance "
         f"{found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow."
     )
     return (Check(PROTECTION, "accuracy", miss, tolerance, meaning),)

@@ -15,6 +15,7 @@ from slosh_cli.scenario.units import plain
 from slosh_cli.scenario.words import Choice
 
 MOST_CELLS = 2000
+"""Finite volumes along a tank."""
 _FOLLOWS: Any = None
 """No value of its own: `TankBase.loaded` finds it."""
 _DAMPING = Number(Range(0.0, 1.0, below=True), "0.005")

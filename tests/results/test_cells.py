@@ -1,11 +1,13 @@
 """Cells that are too few for a short stop: the run says so, and how far the distance may be off."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
 
 from slosh_cli.results.simulate import simulate
+from slosh_cli.scenario.units import STANDARD_GRAVITY
 from tests.campaign.wagons import scenario_of
 
 NAME = "time of a wave through a cell over that of the stop, for the liquid's part of the mass"
@@ -45,6 +47,25 @@ def test_a_short_stop_with_few_cells_names_the_number_that_would_do(found):
     enough = int(coarse.meaning.rpartition("cells: ")[2].rstrip("`."))
     assert enough == pytest.approx(20 * coarse.value / coarse.limit, abs=1)
     assert said_of(with_cells(enough + 1)).within
+
+
+def test_the_share_is_what_the_definition_gives_by_hand(found):
+    """A rectangular tank: small waves run at sqrt(g h); the liquid's part of the mass is that of both weights."""
+    result, tank = found[20], SHORT.tank
+    depth = tank.fill * tank.height
+    liquid = tank.liquid.density * tank.length * tank.width * depth
+    one_cell = tank.length / 20 / math.sqrt(STANDARD_GRAVITY * depth)
+    part = liquid * STANDARD_GRAVITY / result.weight_N
+    assert 0.5 < part < 0.9
+    assert said_of(result).value == pytest.approx(part * one_cell / result.braking_time_s, rel=1e-6)
+
+
+def test_a_stop_too_short_for_any_number_of_cells_says_so():
+    stop = SHORT.with_({"braking.initial_speed": 0.06, "tank.liquid.cells": 2000})
+    said = said_of(simulate(stop))
+    assert not said.within
+    assert "more than the 2000 that there can be" in said.meaning
+    assert "Write" not in said.meaning
 
 
 def test_an_ordinary_stop_has_cells_enough(stop):

@@ -4,6 +4,7 @@ import pytest
 
 from slosh_cli.results.protection import PROTECTION
 from slosh_cli.results.simulate import simulate, simulate_train
+from slosh_cli.scenario.schema_run import SMALLEST_TOLERANCE
 from tests.campaign.trains import train, train_of
 from tests.campaign.wagons import scenario_of, wagon
 
@@ -41,6 +42,14 @@ def test_with_smaller_steps_it_is_resolved(hanging):
     finer = simulate(hanging.scenario.with_({"solver.tolerance": 1e-5}))
     assert said_of(finer).within
     assert said_of(finer).meaning not in finer.warnings
+
+
+def test_at_the_smallest_tolerance_twice_of_it_is_the_other_run():
+    """Half of it would be refused, itself would tell that all is well."""
+    result = simulate(scenario_of(wagon(1220)).with_({"solver.tolerance": SMALLEST_TOLERANCE}))
+    assert result.slide_protection_cycles > 0
+    assert said_of(result).value > 0.0
+    assert "with twice the tolerance" in said_of(result).meaning
 
 
 def test_an_ordinary_stop_is_resolved(stop):
