@@ -14,6 +14,7 @@ from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
 from slosh_cli.scenario.schema_run import SMALLEST_TOLERANCE
 from slosh_cli.scenario.train_file import TrainScenario
+from slosh_cli.scenario.units import digits
 from slosh_cli.solver.advance import STOPPED
 from slosh_cli.solver.run import Cancel, Progress, integrate
 from slosh_cli.solver.setup import ReadyStop, problem, train_problem
@@ -49,8 +50,8 @@ def protection_checks(
         other = float(vehicle.points[START].q[POSITION] - vehicle.account.onset_position)
         miss, found = abs(other / distance - 1.0), f"it is {other:.6g} m"
     meaning = (
-        f"The braking distance of {distance:.6g} m is good to {100.0 * miss:.1g} % only: with {words} the tolerance "
-        f"{found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow."
+        f"The braking distance of {distance:.6g} m is good to {digits(100.0 * miss, 1)} % only: with {words} "
+        f"the tolerance {found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow."
     )
     return (Check(PROTECTION, "accuracy", miss, tolerance, meaning),)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from slosh_cli.results.validity import Check
 from slosh_cli.scenario import Scenario
-from slosh_cli.scenario.units import shown
+from slosh_cli.scenario.units import digits
 
 _STEEL = 7850.0  # kg/m^3
 _SEVERE = 55e-9 / 1e-6 / _STEEL
@@ -53,14 +53,9 @@ def _words(one: Slide, radius: float, crown: float) -> str:
     length, depth = flat_of(one.work / one.distance if one.distance > 0.0 else 0.0, one.distance, radius, crown)
     return (
         f"wheel {one.wheel} for {one.seconds:.2f} s (locks {one.start:.2f} s into the run at {one.speed:.2f} m/s, "
-        f"slides {_digits(one.distance, 3)} m at a stretch: a flat of about {_digits(1e3 * length, 2)} mm length and "
-        f"{_digits(1e3 * depth, 1)} mm depth)"
+        f"slides {digits(one.distance, 3)} m at a stretch: a flat of about {digits(1e3 * length, 2)} mm length and "
+        f"{digits(1e3 * depth, 1)} mm depth)"
     )
-
-
-def _digits(value: float, count: int) -> str:
-    """`value` to so many digits, without an exponent."""
-    return shown(float(f"{value:.{count}g}"))
 
 
 def flat_of(force: float, distance: float, wheel_radius: float, crown_radius: float) -> tuple[float, float]:

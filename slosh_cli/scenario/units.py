@@ -167,6 +167,11 @@ def shown(value: float) -> str:
     return f"{value:.6g}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
 
 
+def digits(value: float, count: int) -> str:
+    """A number for a message, to so many digits and without an exponent."""
+    return shown(float(f"{value:.{count}g}"))
+
+
 def at_least(value: float) -> str:
     """A lower bound for a message: as `shown`, but never below the bound."""
     return _rounded(value, ROUND_CEILING)
