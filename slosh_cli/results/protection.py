@@ -51,7 +51,8 @@ def protection_checks(
         miss, found = abs(other / distance - 1.0), f"it is {other:.6g} m"
     meaning = (
         f"The braking distance of {distance:.6g} m is good to {digits(100.0 * miss, 1)} % only: with {words} "
-        f"the tolerance {found}. Slide protection decides by samples of the slip; one that falls otherwise changes all that follow."
+        f"the tolerance {found}. Slide protection decides by samples of the slip; one that falls otherwise changes "
+        "all that follow."
     )
     return (Check(PROTECTION, "accuracy", miss, tolerance, meaning),)
 
